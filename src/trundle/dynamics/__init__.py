@@ -1,0 +1,31 @@
+"""Reduce vibrating things to matrices and step them through time."""
+
+from trundle.dynamics.damping import Damping, ModalRatio, Rayleigh
+from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
+from trundle.dynamics.exact import ExactPropagator, Modal, ModalPropagator
+from trundle.dynamics.newmark import Newmark, NewmarkPropagator
+from trundle.dynamics.sparse_solver import Factor, available_backends, factorise
+from trundle.dynamics.stepping import Motion, Propagator, State
+from trundle.dynamics.system import LinearSystem, block_diagonal
+
+__all__ = [
+    "Damping",
+    "ExactPropagator",
+    "Factor",
+    "LinearSystem",
+    "Modal",
+    "ModalPropagator",
+    "ModalRatio",
+    "Modes",
+    "Motion",
+    "Newmark",
+    "NewmarkPropagator",
+    "Propagator",
+    "Rayleigh",
+    "State",
+    "available_backends",
+    "block_diagonal",
+    "count_modes_below",
+    "factorise",
+    "natural_modes",
+]

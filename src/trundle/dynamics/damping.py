@@ -1,0 +1,102 @@
+"""State damping once, for direct integration and modal superposition alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self, TypeAlias
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._checks import non_negative, positive, set_frozen, within
+from trundle._typing import Array, Matrix
+from trundle.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rayleigh:
+    """Damp in proportion to mass and stiffness, ``C = alpha M + beta K``.
+
+    The ratio of a mode at omega is ``alpha / (2 omega) + beta omega / 2``.
+
+    Attributes
+    ----------
+    alpha : float
+        Mass coefficient [1/s].
+    beta : float
+        Stiffness coefficient [s].
+
+    Examples
+    --------
+    The coefficients printed in Pan, Mita and Li (2001) are 3 % at 3.75 and 5.80 Hz:
+
+    >>> paper = Rayleigh(alpha=0.8587, beta=0.001)
+    >>> paper.ratios(2 * np.pi * np.array([3.75, 5.80])).round(4).tolist()
+    [0.03, 0.03]
+    """
+
+    alpha: float
+    beta: float
+
+    def __post_init__(self) -> None:
+        """Check both coefficients."""
+        set_frozen(
+            self,
+            alpha=non_negative("rayleigh alpha", self.alpha),
+            beta=non_negative("rayleigh beta", self.beta),
+        )
+
+    @classmethod
+    def through(cls, ratio: float, f_low: float, f_high: float) -> Self:
+        """Give one damping ratio at two frequencies [Hz]."""
+        ratio = within("damping ratio", ratio, 0.0, 1.0)
+        low = 2.0 * np.pi * positive("f_low", f_low)
+        high = 2.0 * np.pi * positive("f_high", f_high)
+        if high <= low:
+            raise InputError(f"f_high must be above f_low = {f_low:g} Hz; got {f_high:g} Hz")
+        return cls(alpha=2 * ratio * low * high / (low + high), beta=2 * ratio / (low + high))
+
+    def ratios(self, omega: Float[Array, " modes"]) -> Float[Array, " modes"]:
+        """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
+        return self.alpha / (2.0 * omega) + self.beta * omega / 2.0
+
+    def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
+        """Return C [N s/m] for the given mass and stiffness matrices."""
+        return self.alpha * mass + self.beta * stiffness
+
+    def __str__(self) -> str:
+        """Describe the model for a report."""
+        return f"Rayleigh alpha = {self.alpha:g} 1/s, beta = {self.beta:g} s"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ModalRatio:
+    """Damp every mode with one ratio of critical damping.
+
+    Attributes
+    ----------
+    ratio : float
+        Ratio of critical damping, at least 0 and below 1.
+    """
+
+    ratio: float
+
+    def __post_init__(self) -> None:
+        """Check the ratio."""
+        if self.ratio >= 1.0:
+            raise InputError(
+                f"damping ratio must be below 1; got {self.ratio:g} (write 3 % as 0.03)"
+            )
+        set_frozen(self, ratio=non_negative("damping ratio", self.ratio))
+
+    def ratios(self, omega: Float[Array, " modes"]) -> Float[Array, " modes"]:
+        """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
+        return np.full_like(omega, self.ratio)
+
+    def __str__(self) -> str:
+        """Describe the model for a report."""
+        return f"{100 * self.ratio:g} % of critical in every mode"
+
+
+Damping: TypeAlias = Rayleigh | ModalRatio
+"""The damping models that a floor can have."""

@@ -1,0 +1,145 @@
+"""Integrate directly in time with Newmark's method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from jaxtyping import Float
+from scipy import linalg, sparse
+
+from trundle._checks import positive, set_frozen, within
+from trundle._typing import Array, Matrix
+from trundle.dynamics.sparse_solver import factorise
+from trundle.dynamics.stepping import Motion, State
+from trundle.dynamics.system import LinearSystem
+
+__all__ = ["Newmark", "NewmarkPropagator"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Newmark:
+    """Choose Newmark's method; the defaults are constant average acceleration.
+
+    Attributes
+    ----------
+    dt : float
+        Time step [s].
+    gamma, beta : float
+        Newmark's parameters; 1/2 and 1/4 keep energy and lengthen periods by
+        ``(omega dt)^2 / 12``.
+    """
+
+    dt: float
+    gamma: float = 0.5
+    beta: float = 0.25
+
+    def __post_init__(self) -> None:
+        """Check that the scheme is stable at any step."""
+        set_frozen(
+            self,
+            dt=positive("dt", self.dt),
+            gamma=within("newmark gamma", self.gamma, 0.5, 1.0),
+        )
+        lowest = 0.25 * (0.5 + self.gamma) ** 2
+        remedy = "smaller values are stable only for short steps"
+        set_frozen(
+            self, beta=within("newmark beta", self.beta, lowest - 1e-12, 1.0, remedy=remedy)
+        )
+
+    def __str__(self) -> str:
+        """Describe the method for a report."""
+        name = (
+            "constant average acceleration"
+            if (self.gamma, self.beta) == (0.5, 0.25)
+            else f"gamma {self.gamma:g}, beta {self.beta:g}"
+        )
+        return f"direct integration, Newmark {name}, dt = {1e3 * self.dt:g} ms"
+
+
+class _Solver(Protocol):
+    def solve(self, right_hand_side: Array) -> Array: ...
+
+
+class _DenseSolver:
+    def __init__(self, matrix: Array) -> None:
+        self._factor = linalg.lu_factor(matrix)
+
+    def solve(self, right_hand_side: Array) -> Array:
+        return linalg.lu_solve(self._factor, right_hand_side)
+
+
+class NewmarkPropagator:
+    """Step ``M u'' + C u' + K u = p`` with one factorisation of the effective stiffness.
+
+    Notes
+    -----
+    With predictors ``u^ = u + dt u' + dt^2 (1/2 - beta) u''`` and
+    ``v^ = u' + dt (1 - gamma) u''`` the end of the step follows from
+    ``(K + a1 C + a0 M) u = p + M a0 u^ + C (a1 u^ - v^)``, with ``a0 = 1 / (beta dt^2)`` and
+    ``a1 = gamma / (beta dt)``; then ``u' = v^ + a1 (u - u^)`` and ``u'' = a0 (u - u^)``.
+
+    References
+    ----------
+    N. M. Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94.
+    """
+
+    def __init__(self, system: LinearSystem, method: Newmark, *, backend: str | None = None):
+        self.dt = method.dt
+        self.method = method
+        self.system = system
+        self.a0 = 1.0 / (method.beta * method.dt**2)
+        self.a1 = method.gamma / (method.beta * method.dt)
+        effective = system.stiffness + self.a1 * system.damping + self.a0 * system.mass
+        self.solver = _factor(effective, backend)
+
+    def start(self, displacement: Float[Array, "dofs runs"]) -> State:
+        """Return a state at rest, in equilibrium at the given displacement."""
+        zero = np.zeros_like(displacement)
+        return State(
+            displacement=displacement, velocity=zero, acceleration=zero, force=np.zeros((0, 0))
+        )
+
+    def predict(self, state: State, force: Float[Array, "dofs runs"] | None = None) -> Motion:
+        """Return the motion at the step's end under a known force there (none: zero)."""
+        u_hat, v_hat = self._predictors(state)
+        system = self.system
+        load = system.mass @ (self.a0 * u_hat) + system.damping @ (self.a1 * u_hat - v_hat)
+        if force is not None:
+            load = load + force
+        u = self.solver.solve(load)
+        return Motion(displacement=u, velocity=v_hat + self.a1 * (u - u_hat))
+
+    def respond(self, force: Float[Array, "dofs columns"]) -> Motion:
+        """Return the change of that motion by forces at the step's end."""
+        u = self.solver.solve(force)
+        return Motion(displacement=u, velocity=self.a1 * u)
+
+    def finish(
+        self, state: State, motion: Motion, force: Float[Array, "dofs runs"] | None = None
+    ) -> State:
+        """Return the state at the step's end; the force is already in the motion."""
+        del force
+        u_hat, _ = self._predictors(state)
+        return State(
+            displacement=motion.displacement,
+            velocity=motion.velocity,
+            acceleration=self.a0 * (motion.displacement - u_hat),
+            force=state.force,
+        )
+
+    def _predictors(self, state: State) -> tuple[Array, Array]:
+        dt, method = self.dt, self.method
+        u_hat = (
+            state.displacement
+            + dt * state.velocity
+            + (dt**2 * (0.5 - method.beta)) * state.acceleration
+        )
+        return u_hat, state.velocity + (dt * (1.0 - method.gamma)) * state.acceleration
+
+
+def _factor(effective: Matrix, backend: str | None) -> _Solver:
+    if sparse.issparse(effective):
+        return factorise(sparse.csc_array(effective), backend=backend)
+    return _DenseSolver(np.asarray(effective))

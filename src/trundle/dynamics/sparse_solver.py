@@ -1,0 +1,155 @@
+"""Factorise a sparse symmetric matrix once and solve with it many times.
+
+PARDISO is used when the ``fast`` extra is installed, SuperLU in symmetric mode otherwise.
+The COLAMD ordering that scipy would choose by itself is about four times slower on a floor.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import weakref
+from functools import cache
+from typing import Any, Protocol
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import linalg as sparse_linalg
+
+from trundle._typing import Array, SparseMatrix
+from trundle.errors import InputError, UnrestrainedModeError
+
+__all__ = ["BACKENDS", "Factor", "available_backends", "factorise"]
+
+BACKENDS = ("pardiso", "superlu")
+"""Names of the sparse solvers, in the order of preference."""
+
+
+class Factor(Protocol):
+    """What a factorised symmetric matrix A can do."""
+
+    @property
+    def n_negative(self) -> int:
+        """Number of negative eigenvalues of A (Sylvester's law of inertia)."""
+        ...
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """Return ``A^-1 b`` for b of shape (n,) or (n, k)."""
+        ...
+
+
+@cache
+def available_backends() -> tuple[str, ...]:
+    """Return the solvers that work in this environment, best first."""
+    if importlib.util.find_spec("pypardiso") is None:
+        return ("superlu",)
+    try:
+        importlib.import_module("pypardiso")
+    except (ImportError, OSError):
+        return ("superlu",)
+    return BACKENDS
+
+
+def factorise(matrix: SparseMatrix, *, backend: str | None = None) -> Factor:
+    """Factorise a sparse symmetric matrix, definite or not.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (n, n)
+        Symmetric matrix; both triangles stored.
+    backend : {"pardiso", "superlu"}, optional
+        Solver; the best one available unless named.
+
+    Returns
+    -------
+    Factor
+        Something that solves, and knows its count of negative eigenvalues.
+
+    Raises
+    ------
+    InputError
+        Unknown or missing backend.
+    UnrestrainedModeError
+        The matrix is singular: the structure is a mechanism.
+    """
+    name = backend or available_backends()[0]
+    if name not in available_backends():
+        known = ", ".join(available_backends())
+        raise InputError(f"sparse backend must be one of {known}; got {name!r}")
+    if name == "pardiso":
+        return _PardisoFactor(matrix)
+    return _SuperLUFactor(matrix)
+
+
+class _SuperLUFactor:
+    """Symmetric-mode SuperLU with minimum degree on A + A^T and pivots on the diagonal."""
+
+    def __init__(self, matrix: SparseMatrix) -> None:
+        options: dict[str, Any] = {"SymmetricMode": True}
+        try:
+            self._lu = sparse_linalg.splu(
+                sparse.csc_matrix(matrix),
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.0,
+                options=options,
+            )
+        except RuntimeError as error:
+            raise UnrestrainedModeError(_SINGULAR) from error
+        pivots = self._lu.U.diagonal()
+        if not _well_conditioned(pivots):
+            raise UnrestrainedModeError(_SINGULAR)
+        self.n_negative = int(np.count_nonzero(pivots < 0.0))
+
+    def solve(self, right_hand_side: Array) -> Array:
+        return self._lu.solve(np.ascontiguousarray(right_hand_side))
+
+
+class _PardisoFactor:
+    """MKL PARDISO, Cholesky where the matrix is definite, LDL^T where it is not."""
+
+    def __init__(self, matrix: SparseMatrix) -> None:
+        wrapper = importlib.import_module("pypardiso.pardiso_wrapper")
+        upper = sparse.csr_matrix(sparse.triu(sparse.csr_array(matrix), format="csr"))
+        upper.sort_indices()
+        self._upper = upper
+        self._solver: Any = None
+        self.n_negative = 0
+        if np.all(upper.diagonal() > 0.0) and self._try_type(wrapper, _DEFINITE):
+            return
+        if not self._try_type(wrapper, _INDEFINITE):
+            raise UnrestrainedModeError(_SINGULAR)
+        self.n_negative = int(self._solver.iparm[22])
+        if int(self._solver.iparm[13]) > 0:  # perturbed pivots: singular to round-off
+            raise UnrestrainedModeError(_SINGULAR)
+
+    def _try_type(self, wrapper: Any, matrix_type: int) -> bool:
+        solver = wrapper.PyPardisoSolver(mtype=matrix_type)
+        # MKL holds the factor outside Python's memory; give it back with this object.
+        weakref.finalize(self, solver.free_memory)
+        solver.set_phase(12)
+        try:
+            solver._call_pardiso(self._upper, np.zeros((self._upper.shape[0], 1)))
+        except wrapper.PyPardisoError:
+            return False
+        # The factorisation call resets this entry, so refinement is switched off after it.
+        solver.iparm[7] = 0
+        solver.set_phase(33)
+        self._solver = solver
+        return True
+
+    def solve(self, right_hand_side: Array) -> Array:
+        return self._solver._call_pardiso(self._upper, np.asfortranarray(right_hand_side))
+
+
+_DEFINITE, _INDEFINITE = 2, -2  # PARDISO's matrix types for real symmetric matrices
+
+
+def _well_conditioned(pivots: Array) -> bool:
+    sizes = np.abs(pivots)
+    return bool(np.all(np.isfinite(sizes)) and sizes.min() > 1e-14 * np.median(sizes))
+
+
+_SINGULAR = (
+    "the stiffness matrix is singular: part of the structure can move without strain; "
+    "add supports, or connect the loose part"
+)

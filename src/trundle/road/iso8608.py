@@ -1,0 +1,126 @@
+"""Describe road roughness by the displacement spectra of ISO 8608."""
+
+from __future__ import annotations
+
+from dataclasses import KW_ONLY, dataclass
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+from jaxtyping import Float
+from numpy.typing import ArrayLike
+
+from trundle._checks import one_of, positive, set_frozen, within
+from trundle._typing import Array
+
+__all__ = [
+    "CLASS_NAMES",
+    "FITTED_RANGE",
+    "REFERENCE_ANGULAR_FREQUENCY",
+    "REFERENCE_FREQUENCY",
+    "RoadClass",
+    "RoughnessLevel",
+    "class_limits",
+]
+
+REFERENCE_FREQUENCY = 0.1
+"""Reference spatial frequency n0 [cycle/m] (ISO 8608)."""
+
+REFERENCE_ANGULAR_FREQUENCY = 1.0
+"""Reference angular spatial frequency Omega0 [rad/m] (ISO 8608)."""
+
+FITTED_RANGE = (0.011, 2.83)
+"""Spatial frequencies over which ISO 8608 fits its straight line [cycle/m]."""
+
+CLASS_NAMES = "ABCDEFGH"
+"""The eight road classes, smooth to rough."""
+
+RoughnessLevel: TypeAlias = Literal["lower", "geometric_mean", "upper"]
+"""Which line of a class: its lower limit, geometric mean or upper limit."""
+
+_LEVEL_FACTOR = {"lower": 0.5, "geometric_mean": 1.0, "upper": 2.0}
+
+
+def class_limits(name: str) -> tuple[float, float, float]:
+    """Return lower limit, geometric mean and upper limit of Gd(n0) of a class [m3].
+
+    ISO 8608 leaves the lower limit of A and the upper limit of H open; the values here
+    continue its geometric series, as Pan, Mita and Li (2001, Table 1) do.
+
+    Examples
+    --------
+    >>> [round(1e6 * limit) for limit in class_limits("B")]
+    [32, 64, 128]
+    """
+    one_of("road class", name, CLASS_NAMES)
+    mean = 16e-6 * 4.0 ** CLASS_NAMES.index(name)
+    return 0.5 * mean, mean, 2.0 * mean
+
+
+@dataclass(frozen=True)
+class RoadClass:
+    """Hold a road class of ISO 8608 with the line of it that is meant.
+
+    Attributes
+    ----------
+    name : str
+        Class letter, ``A`` (smooth) to ``H``.
+    level : {"lower", "geometric_mean", "upper"}
+        Line of the class; the geometric mean unless said otherwise.
+    waviness : float
+        Exponent w of ``Gd(n) = Gd(n0) (n / n0)^-w``, 1 to 4.
+
+    Examples
+    --------
+    >>> RoadClass("B").roughness
+    6.4e-05
+    """
+
+    name: str
+    _: KW_ONLY
+    level: RoughnessLevel = "geometric_mean"
+    waviness: float = 2.0
+
+    def __post_init__(self) -> None:
+        """Check class letter, level and exponent."""
+        one_of("road class", self.name, CLASS_NAMES)
+        one_of("road level", self.level, get_args(RoughnessLevel))
+        set_frozen(self, waviness=within("waviness", self.waviness, 1.0, 4.0))
+
+    @property
+    def roughness(self) -> float:
+        """Displacement PSD at the reference frequency, Gd(n0) [m3]."""
+        return class_limits(self.name)[1] * _LEVEL_FACTOR[self.level]
+
+    def displacement_psd(self, n: ArrayLike) -> Float[Array, "..."]:
+        """Return the one-sided PSD Gd [m3] at spatial frequency n [cycle/m]."""
+        return self.roughness * (np.asarray(n, float) / REFERENCE_FREQUENCY) ** -self.waviness
+
+    def displacement_psd_angular(self, angular: ArrayLike) -> Float[Array, "..."]:
+        """Return the one-sided PSD Gd [m3/rad] at angular spatial frequency Omega [rad/m].
+
+        The same power in other words: ``Gd(Omega) dOmega = Gd(n) dn``, so
+        ``Gd(Omega) = Gd(n) / (2 pi)`` at ``Omega = 2 pi n``.
+        """
+        wave = np.asarray(angular, float)
+        return self.displacement_psd(wave / (2.0 * np.pi)) / (2.0 * np.pi)
+
+    def variance(self, n_min: float, n_max: float) -> float:
+        """Return the elevation's variance over a band of spatial frequencies [m2]."""
+        low, high = positive("n_min", n_min), positive("n_max", n_max)
+        return float(band_power(self, np.array([low]), np.array([high]))[0])
+
+    def __str__(self) -> str:
+        """Describe class and line for a report."""
+        line = self.level.replace("_", " ")
+        exponent = "" if self.waviness == 2.0 else f", w = {self.waviness:g}"
+        return f"class {self.name} ({line}{exponent})"
+
+
+def band_power(
+    road: RoadClass, low: Float[Array, " bands"], high: Float[Array, " bands"]
+) -> Float[Array, " bands"]:
+    """Integrate Gd over bands [low, high] of spatial frequency in closed form [m2]."""
+    w, n0 = road.waviness, REFERENCE_FREQUENCY
+    if w == 1.0:
+        return road.roughness * n0 * np.log(high / low)
+    return road.roughness * n0**w / (w - 1.0) * (low ** (1.0 - w) - high ** (1.0 - w))

@@ -1,0 +1,130 @@
+"""Say how a wheel comes onto the floor and leaves it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._checks import positive, set_frozen
+from trundle._typing import Array
+
+__all__ = ["DriveIn", "Entry", "Ramp", "StaticStart"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Ramp:
+    """Let each wheel's force rise linearly over one length before the floor's edge.
+
+    This is the paper's hat function at the first node; at the far edge the force falls in
+    the same way.
+
+    Attributes
+    ----------
+    length : float
+        Length of the ramp [m]; the paper's reading is one element.
+    """
+
+    length: float
+
+    def __post_init__(self) -> None:
+        """Check the length."""
+        set_frozen(self, length=positive("ramp length", self.length))
+
+    def lead(self, vehicle_length: float) -> float:
+        """Return where the front axle stands at time 0 [m]: at the foot of the ramp."""
+        del vehicle_length
+        return -self.length
+
+    def share(
+        self, station: Float[Array, "..."], route_length: float
+    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+        """Return the share of the force that the floor carries, and its slope [1/m]."""
+        before, after = station < 0.0, station > route_length
+        outside = np.where(before, -station, np.where(after, station - route_length, 0.0))
+        share = np.clip(1.0 - outside / self.length, 0.0, 1.0)
+        sign = np.where(before, 1.0, np.where(after, -1.0, 0.0))
+        return share, np.where(share > 0.0, sign / self.length, 0.0)
+
+    def __str__(self) -> str:
+        """Describe the entry for a report."""
+        return f"ramp over {self.length:.3g} m before the edge"
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveIn:
+    """Let each wheel drive in from an approach whose far side is rigid.
+
+    The floor's share of the force rises by ``3 x^2 - 2 x^3`` over a length inside the edge
+    (a transition slab), and falls in the same way at the exit.
+
+    Attributes
+    ----------
+    length : float
+        Length of the transition [m].
+    """
+
+    length: float
+
+    def __post_init__(self) -> None:
+        """Check the length."""
+        set_frozen(self, length=positive("drive-in length", self.length))
+
+    def lead(self, vehicle_length: float) -> float:
+        """Return where the front axle stands at time 0 [m]: at the edge."""
+        del vehicle_length
+        return 0.0
+
+    def share(
+        self, station: Float[Array, "..."], route_length: float
+    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+        """Return the share of the force that the floor carries, and its slope [1/m]."""
+        x = np.clip(station / self.length, 0.0, 1.0)
+        y = np.clip((route_length - station) / self.length, 0.0, 1.0)
+        rise, fall = x * x * (3 - 2 * x), y * y * (3 - 2 * y)
+        slope = (6 * x * (1 - x) * fall - 6 * y * (1 - y) * rise) / self.length
+        return rise * fall, slope
+
+    def __str__(self) -> str:
+        """Describe the entry for a report."""
+        return f"drive-in over {self.length:g} m"
+
+
+@dataclass(frozen=True, kw_only=True)
+class StaticStart:
+    """Start with the whole vehicle on the floor, all in static equilibrium.
+
+    Attributes
+    ----------
+    exit_length : float
+        Length over which each wheel's force falls linearly behind the far edge [m].
+    """
+
+    exit_length: float
+
+    def __post_init__(self) -> None:
+        """Check the length."""
+        set_frozen(self, exit_length=positive("exit_length", self.exit_length))
+
+    def lead(self, vehicle_length: float) -> float:
+        """Return where the front axle stands at time 0 [m]: the rear axle is at the edge."""
+        return vehicle_length
+
+    def share(
+        self, station: Float[Array, "..."], route_length: float
+    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+        """Return the share of the force that the floor carries, and its slope [1/m]."""
+        share, slope = Ramp(length=self.exit_length).share(station, route_length)
+        # A rear axle may stand a rounding error before the edge at the start.
+        before = station < 0.0
+        return np.where(before, 1.0, share), np.where(before, 0.0, slope)
+
+    def __str__(self) -> str:
+        """Describe the entry for a report."""
+        return "static equilibrium on the floor at the start"
+
+
+Entry: TypeAlias = Ramp | DriveIn | StaticStart
+"""The ways onto a floor."""

@@ -1,0 +1,23 @@
+"""Drive vehicles over floors: decoupled or coupled, one at a time or together."""
+
+from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
+from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
+from trundle.simulate.ensemble import PreparedFloor, contact_forces, ensemble, prepare
+from trundle.simulate.runs import Runs
+
+__all__ = [
+    "Coupled",
+    "Crossing",
+    "Decoupled",
+    "Integration",
+    "Interaction",
+    "Modal",
+    "ModalRatio",
+    "Newmark",
+    "PreparedFloor",
+    "Rayleigh",
+    "Runs",
+    "contact_forces",
+    "ensemble",
+    "prepare",
+]

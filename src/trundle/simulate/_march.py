@@ -1,0 +1,215 @@
+"""Step vehicle and floor together through time, all runs at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy import linalg
+
+from trundle._typing import Array
+from trundle.dynamics import Motion, Propagator, State
+from trundle.errors import UnstableStepError
+from trundle.simulate._floors import ContactFloor, RigidGround
+from trundle.simulate._schedule import RoadUnderWheels, Timeline
+
+__all__ = ["ContactLaw", "Record", "drive", "load_floor", "run_in", "static_start"]
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactLaw:
+    """Hold springs and dampers between vehicle and ground, and the vehicle beside them.
+
+    Attributes
+    ----------
+    vehicle : Propagator
+        The vehicle without its contact springs, prepared for the time step.
+    contact_map : ndarray of float, shape (n_contacts, n_dofs)
+        Vehicle motion over each contact.
+    stiffness, damping, static : ndarray of float, shape (n_contacts, 1)
+        Contact springs [N/m], dampers [N s/m] and static forces [N].
+    standing_stiffness : ndarray of float, shape (n_dofs, n_dofs)
+        Vehicle stiffness on rigid ground, contact springs included [N/m].
+    """
+
+    vehicle: Propagator
+    contact_map: Float[Array, "contacts dofs"]
+    stiffness: Float[Array, "contacts 1"]
+    damping: Float[Array, "contacts 1"]
+    static: Float[Array, "contacts 1"]
+    standing_stiffness: Float[Array, "dofs dofs"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Record:
+    """Hold what was seen at every step, shapes (n_steps, n_points or n_contacts, n_runs)."""
+
+    displacement: Float[Array, "steps points runs"]
+    velocity: Float[Array, "steps points runs"]
+    acceleration: Float[Array, "steps points runs"]
+    forces: Float[Array, "steps contacts runs"]
+
+
+def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[State, Array]:
+    """Drive on rigid ground up to time 0; return the vehicle's state and contact forces.
+
+    The vehicle starts at rest, in equilibrium on the road under its wheels.
+    """
+    e, k = law.contact_map, law.stiffness
+    ground = RigidGround(len(k))
+    still = ground.start(road.elevation.shape[2], None)
+    z = linalg.solve(law.standing_stiffness, e.T @ (k * road.elevation[0]))
+    forces = law.static - k * (e @ z - road.elevation[0])
+    state = law.vehicle.start(z)
+    for at in range(1, timeline.n_run_in + 1):
+        state, _, forces = _step(law, ground, (state, still), at, road, step=at)
+    return state, forces
+
+
+def static_start(
+    law: ContactLaw, floor: ContactFloor, road: RoadUnderWheels
+) -> tuple[State, State, Array]:
+    """Return vehicle and floor in static equilibrium, and the contact forces.
+
+    With S the floor's static sinking under unit forces, ``K_v z = E^T k (r - S f)`` and
+    ``f = static - k (E z - r + S f)`` are solved together.
+    """
+    e, k = law.contact_map, law.stiffness
+    unit = floor.start(len(k), np.eye(len(k)))
+    height, _ = floor.under_wheels(
+        0, Motion(displacement=unit.displacement, velocity=unit.velocity)
+    )
+    sink = -height
+    matrix = np.block(
+        [[law.standing_stiffness, e.T @ (k * sink)], [k * e, np.eye(len(k)) + k * sink]]
+    )
+    right = np.vstack([e.T @ (k * road.elevation[0]), law.static + k * road.elevation[0]])
+    solution = linalg.solve(matrix, right)
+    z, forces = np.split(solution, [e.shape[1]])
+    return law.vehicle.start(z), floor.start(forces.shape[1], forces), forces
+
+
+def drive(
+    law: ContactLaw,
+    floor: ContactFloor,
+    start: tuple[State, State, Array],
+    timeline: Timeline,
+    road: RoadUnderWheels,
+    progress: Progress | None = None,
+) -> Record:
+    """Step a coupled vehicle and floor over the record."""
+    vehicle_state, floor_state, forces = start
+    n_steps = len(timeline.time) - timeline.n_run_in
+    record = _Recorder(n_steps, floor, floor_state, forces)
+    for step in range(1, n_steps):
+        vehicle_state, floor_state, forces = _step(
+            law, floor, (vehicle_state, floor_state), timeline.n_run_in + step, road, step=step
+        )
+        record.add(step, floor_state, forces, timeline)
+        if progress is not None and step % 64 == 0:
+            progress(step / n_steps)
+    return record.done()
+
+
+def load_floor(
+    floor: ContactFloor,
+    forces: Float[Array, "steps contacts runs"],
+    timeline: Timeline,
+    *,
+    static: bool,
+    progress: Progress | None = None,
+) -> Record:
+    """Step a floor under known contact forces over the record."""
+    n_runs = forces.shape[2]
+    state = floor.start(n_runs, forces[0] if static else None)
+    record = _Recorder(len(forces), floor, state, forces[0])
+    for step in range(1, len(forces)):
+        motion = floor.predict(step, state, forces[step])
+        state = floor.finish(step, state, motion, forces[step], applied=True)
+        record.add(step, state, forces[step], timeline)
+        if progress is not None and step % 64 == 0:
+            progress(step / len(forces))
+    return record.done()
+
+
+def _step(
+    law: ContactLaw,
+    floor: ContactFloor,
+    states: tuple[State, State],
+    at: int,
+    road: RoadUnderWheels,
+    *,
+    step: int,
+) -> tuple[State, State, Array]:
+    """Advance both systems by one step and return their states and the contact forces.
+
+    `at` counts steps from the start of the run-in, as the road does; `step` counts those of
+    the record, as the floor does.
+
+    The contact force is the unknown: with both motions linear in it, what is left is a
+    system of n_contacts equations, the same for every run.
+    """
+    e, k, c = law.contact_map, law.stiffness, law.damping
+    vehicle_state, floor_state = states
+    free = law.vehicle.predict(vehicle_state)
+    motion = floor.predict(step, floor_state, None)
+    height, rate = floor.under_wheels(step, motion)
+    sink, sink_rate = floor.compliance(step)
+    lift = law.vehicle.respond(e.T)
+    stiff = k * (e @ lift.displacement + sink) + c * (e @ lift.velocity + sink_rate)
+    gap = e @ free.displacement - road.elevation[at] - height + sink @ law.static
+    gap_rate = e @ free.velocity - road.rate[at] - rate + sink_rate @ law.static
+    dynamic = np.linalg.solve(np.eye(len(k)) + stiff, -(k * gap + c * gap_rate))
+    forces = law.static + dynamic
+    load = e.T @ dynamic
+    change = law.vehicle.respond(load)
+    vehicle_motion = Motion(
+        displacement=free.displacement + change.displacement,
+        velocity=free.velocity + change.velocity,
+    )
+    return (
+        law.vehicle.finish(vehicle_state, vehicle_motion, load),
+        floor.finish(step, floor_state, motion, forces, applied=False),
+        forces,
+    )
+
+
+class _Recorder:
+    """Collect readings and forces step by step, and stop at the first that is not finite."""
+
+    def __init__(self, n_steps: int, floor: ContactFloor, state: State, forces: Array) -> None:
+        self._floor = floor
+        first = floor.read(state)
+        shape = (n_steps, *first[0].shape)
+        self._readings = tuple(np.zeros(shape) for _ in range(3))
+        self._forces = np.zeros((n_steps, *forces.shape))
+        for array, values in zip(self._readings, first, strict=True):
+            array[0] = values
+        self._forces[0] = forces
+
+    def add(self, step: int, state: State, forces: Array, timeline: Timeline) -> None:
+        readings = self._floor.read(state)
+        for array, values in zip(self._readings, readings, strict=True):
+            array[step] = values
+        self._forces[step] = forces
+        if not (np.isfinite(forces).all() and all(np.isfinite(r).all() for r in readings)):
+            time = float(timeline.time[timeline.n_run_in + step])
+            raise UnstableStepError(
+                f"a number stopped being finite at step {step}, t = {time:g} s; "
+                "shorten the time step",
+                step=step,
+                time=time,
+            )
+
+    def done(self) -> Record:
+        displacement, velocity, acceleration = self._readings
+        return Record(
+            displacement=displacement,
+            velocity=velocity,
+            acceleration=acceleration,
+            forces=self._forces,
+        )

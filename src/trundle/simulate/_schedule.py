@@ -1,0 +1,168 @@
+"""Lay out in time where every wheel is, what carries it, and the road under it."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._typing import Array
+from trundle.errors import InputError
+from trundle.road import Profile, synthesise
+from trundle.route import ContactRows, ContactShape, StaticStart, contact_rows, deck_of
+from trundle.simulate.crossing import Crossing
+from trundle.structure import Floor
+
+__all__ = ["RoadUnderWheels", "Timeline", "lay_out", "operator_rows", "roads_under_wheels"]
+
+_MARGIN = 1.0  # m of road beyond the last wheel, so that no wheel ever runs off its profile
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Timeline:
+    """Hold the wheels' stations and speeds over the run-in and the record.
+
+    Attributes
+    ----------
+    time : ndarray of float, shape (n_all,)
+        Times [s]; negative during the run-in, 0 at the record's start.
+    n_run_in : int
+        Number of steps before time 0.
+    station : ndarray of float, shape (n_all, n_contacts)
+        Station of each wheel along its route [m].
+    speed : ndarray of float, shape (n_all, n_contacts)
+        Speed of each wheel [m/s].
+    """
+
+    time: Float[Array, " steps"]
+    n_run_in: int
+    station: Float[Array, "steps contacts"]
+    speed: Float[Array, "steps contacts"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RoadUnderWheels:
+    """Hold the road that every wheel of every run meets.
+
+    Attributes
+    ----------
+    elevation : ndarray of float, shape (n_all, n_contacts, n_runs)
+        Height of the road [m].
+    rate : ndarray of float, shape (n_all, n_contacts, n_runs)
+        Its rate of change under the moving wheel, V dz/ds [m/s].
+    """
+
+    elevation: Float[Array, "steps contacts runs"]
+    rate: Float[Array, "steps contacts runs"]
+
+
+def lay_out(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Timeline:
+    """Return the timeline of all crossings, run-in first."""
+    static = [isinstance(crossing.entry, StaticStart) for crossing in crossings]
+    if any(static) and not all(static):
+        raise InputError("either every crossing starts in static equilibrium or none does")
+    run_in = 0.0 if any(static) else max(crossing.run_in_time for crossing in crossings)
+    n_run_in = int(np.ceil(run_in / dt - 1e-9))
+    n_steps = round(duration / dt)
+    if n_steps < 2:
+        raise InputError(f"duration must hold at least 2 steps of {dt:g} s; got {duration:g} s")
+    time = dt * np.arange(-n_run_in, n_steps + 1)
+    stations, speeds = [], []
+    for crossing in crossings:
+        law, clock = crossing.route.law, time - crossing.depart
+        moving = np.ones_like(clock)
+        if isinstance(crossing.entry, StaticStart):
+            moving, clock = (clock >= 0.0).astype(float), np.maximum(clock, 0.0)
+        front = crossing.lead + law.distance(clock)
+        stations.append(front[:, None] - crossing.vehicle.setback)
+        speeds.append(
+            np.broadcast_to((law.speed(clock) * moving)[:, None], stations[-1].shape)
+        )
+    return Timeline(
+        time=time, n_run_in=n_run_in, station=np.hstack(stations), speed=np.hstack(speeds)
+    )
+
+
+def roads_under_wheels(
+    crossings: tuple[Crossing, ...], timeline: Timeline, n_runs: int, seed: int
+) -> RoadUnderWheels:
+    """Draw or read the road under every wheel.
+
+    A crossing's road depends on the seed, its route's name and the run's number alone; so
+    the truck of one route meets the same road whether it drives alone or with others.
+    """
+    shape = (len(timeline.time), timeline.station.shape[1], n_runs)
+    elevation, rate = np.empty(shape), np.empty(shape)
+    at = 0
+    for crossing in crossings:
+        columns = slice(at, at + crossing.vehicle.n_contacts)
+        at = columns.stop
+        station, speed = timeline.station[:, columns], timeline.speed[:, columns]
+        for run in range(n_runs):
+            profile = _profile_of(crossing, station, speed, timeline, seed, run)
+            z, slope = profile.at(station)
+            elevation[:, columns, run] = z
+            rate[:, columns, run] = speed * slope
+    return RoadUnderWheels(elevation=elevation, rate=rate)
+
+
+def _profile_of(
+    crossing: Crossing, station: Array, speed: Array, timeline: Timeline, seed: int, run: int
+) -> Profile:
+    if isinstance(crossing.road, Profile):
+        return crossing.road
+    dt = float(timeline.time[1] - timeline.time[0])
+    limit = 0.5 / (float(speed.max()) * dt)
+    if crossing.band.n_max > limit * (1 + 1e-9):
+        raise InputError(
+            f"route {crossing.route.name!r}: roughness up to {crossing.band.n_max:g} cycle/m at "
+            f"{speed.max():.3g} m/s needs a time step of at most "
+            f"{0.5 / (crossing.band.n_max * speed.max()):.3g} s; got {dt:g} s: shorten dt or "
+            f"lower n_max to {limit:.3g} cycle/m"
+        )
+    low, high = float(station.min()) - _MARGIN, float(station.max()) + _MARGIN
+    return synthesise(
+        crossing.road,
+        length=high - low,
+        rng=run_generator(seed, crossing.route.name, run),
+        band=crossing.band,
+        start=low,
+    )
+
+
+def run_generator(seed: int, route_name: str, run: int) -> np.random.Generator:
+    """Return the random generator of one run on one route."""
+    key = (zlib.crc32(route_name.encode()), run)
+    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=key))
+
+
+def operator_rows(
+    floor: Floor, crossings: tuple[Crossing, ...], timeline: Timeline, shape: ContactShape
+) -> ContactRows:
+    """Form the contact operator of every wheel at every time of the record.
+
+    Returns
+    -------
+    ContactRows
+        ``n_steps + 1`` times ``n_contacts`` rows, contact running fastest.
+    """
+    deck = deck_of(floor)
+    station = timeline.station[timeline.n_run_in :]
+    places = np.empty((*station.shape, 2))
+    directions = np.empty((*station.shape, 2))
+    share, share_slope = np.empty(station.shape), np.empty(station.shape)
+    at = 0
+    for crossing in crossings:
+        for lateral in crossing.vehicle.lateral:
+            route = crossing.route
+            places[:, at], directions[:, at] = route.locate(station[:, at], lateral)
+            share[:, at], share_slope[:, at] = crossing.entry.share(
+                station[:, at], route.length
+            )
+            at += 1
+    rows = contact_rows(
+        floor, places.reshape(-1, 2), directions.reshape(-1, 2), shape=shape, deck=deck
+    )
+    return rows.scaled(share.ravel(), share_slope.ravel())

@@ -1,0 +1,150 @@
+"""Say which vehicle crosses which floor, on which road, and by which method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+
+from trundle._checks import finite, non_negative, set_frozen
+from trundle.dynamics import Damping, Modal, ModalRatio, Newmark
+from trundle.errors import InputError
+from trundle.road import Profile, RoadClass, RoughnessBand
+from trundle.route import ContactShape, DriveIn, Entry, Hermite, Route
+from trundle.vehicle import Vehicle
+
+__all__ = ["Coupled", "Crossing", "Decoupled", "Integration", "Interaction"]
+
+Integration: TypeAlias = Newmark | Modal
+"""How the floor's equations are integrated in time."""
+
+_RUN_IN_LIMIT = 20.0  # s; a vehicle without damping would otherwise run in for ever
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Crossing:
+    """Hold one vehicle's drive over the floor.
+
+    Attributes
+    ----------
+    vehicle : Vehicle
+        The vehicle.
+    route : Route
+        Where it drives, and how fast.
+    road : RoadClass or Profile
+        Random roughness of a class, drawn anew for each run, or one given profile whose
+        station 0 is the route's start.
+    band : RoughnessBand
+        Spatial frequencies of a random road.
+    entry : Entry
+        How wheels come onto the floor.
+    run_in : float or None
+        Distance driven on rigid rough ground before time 0 [m]; None lets the slowest
+        motion of the vehicle decay to 5 %, 0 starts it at rest.
+    depart : float
+        Time at which the front axle is at the entry's start [s].
+    """
+
+    vehicle: Vehicle
+    route: Route
+    road: RoadClass | Profile
+    band: RoughnessBand = field(default_factory=RoughnessBand)
+    entry: Entry = field(default_factory=lambda: DriveIn(length=3.0))
+    run_in: float | None = None
+    depart: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check times and distances."""
+        set_frozen(self, depart=finite("depart", self.depart))
+        if self.run_in is not None:
+            set_frozen(self, run_in=non_negative("run_in", self.run_in))
+
+    @property
+    def lead(self) -> float:
+        """Station of the front axle at the time of departure [m]."""
+        return self.entry.lead(self.vehicle.length)
+
+    @property
+    def run_in_time(self) -> float:
+        """Time driven on rigid ground before time 0 [s]."""
+        speed = float(self.route.law.speed(0.0))
+        if self.run_in is not None:
+            return self.run_in / speed
+        rates = self.vehicle.decay_rates()
+        return float(min(3.0 / max(rates.min(), 1e-9), _RUN_IN_LIMIT))
+
+    @property
+    def exit_time(self) -> float:
+        """Time at which the last wheel has left the floor [s]."""
+        way = self.route.length - self.lead + self.vehicle.length
+        return self.depart + self.route.law.time_to(way)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Decoupled:
+    """Load the floor with the contact forces of a vehicle on rigid ground.
+
+    The paper's dynamic nodal loading (DNL), "non-interaction".
+
+    Attributes
+    ----------
+    integration : Newmark or Modal
+        Time integration of vehicle and floor.
+    damping : Rayleigh or ModalRatio
+        Damping of the floor.
+    contact : Hermite or Hat
+        Interpolation of the load between nodes.
+    """
+
+    integration: Integration
+    damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
+    contact: ContactShape = field(default_factory=Hermite)
+
+    def __post_init__(self) -> None:
+        """Refuse a damping that the integration cannot carry."""
+        _check_damping(self.integration, self.damping)
+
+    def __str__(self) -> str:
+        """Describe the method for a report."""
+        return f"decoupled; {self.integration}; {self.damping}; {self.contact}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coupled:
+    """Solve vehicle and floor together at every step, without factorising anything again.
+
+    The paper's dynamic finite-element method (DFE), "interaction". Attributes as in
+    `Decoupled`.
+    """
+
+    integration: Integration
+    damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
+    contact: ContactShape = field(default_factory=Hermite)
+
+    def __post_init__(self) -> None:
+        """Refuse a damping that the integration cannot carry."""
+        _check_damping(self.integration, self.damping)
+
+    def __str__(self) -> str:
+        """Describe the method for a report."""
+        return f"coupled; {self.integration}; {self.damping}; {self.contact}"
+
+
+Interaction: TypeAlias = Decoupled | Coupled
+"""How vehicle and floor act on each other."""
+
+
+def _check_damping(integration: Integration, damping: Damping) -> None:
+    if isinstance(integration, Newmark) and isinstance(damping, ModalRatio) and damping.ratio:
+        f1, f2 = 3.75, 5.8
+        raise InputError(
+            "direct integration needs Rayleigh damping: a ratio for every mode would fill the "
+            f"whole matrix; use Rayleigh.through({damping.ratio:g}, {f1}, {f2}) with two "
+            "frequencies of the floor, or modal superposition"
+        )
+
+
+def contact_count(crossings: tuple[Crossing, ...]) -> int:
+    """Return the number of contact points of all crossings together."""
+    return int(np.sum([crossing.vehicle.n_contacts for crossing in crossings]))

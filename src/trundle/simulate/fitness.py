@@ -1,0 +1,149 @@
+"""Raise the doubts that a result must carry with it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trundle._typing import Array
+from trundle.dynamics import Modal, Modes, Newmark, Rayleigh
+from trundle.errors import FitnessWarning
+from trundle.road import FITTED_RANGE, RoadClass
+from trundle.route import Hat
+from trundle.simulate.crossing import Crossing, Interaction
+from trundle.structure import Floor
+
+__all__ = ["fitness_warnings"]
+
+_HARMONICS = 4  # multiples of V / h that the hat function excites noticeably
+_NEAR = 0.05  # relative distance within which such a frequency counts as on a mode
+_HEAVY = 0.10  # damping ratio above which Rayleigh damping suppresses what it should show
+
+
+def fitness_warnings(
+    crossings: tuple[Crossing, ...],
+    method: Interaction,
+    floor: Floor,
+    modes: Modes | None,
+    forces: Array,
+) -> tuple[FitnessWarning, ...]:
+    """Return every doubt about an ensemble's fitness, worst first where they rank.
+
+    Parameters
+    ----------
+    crossings : tuple of Crossing
+        What drove.
+    method : Decoupled or Coupled
+        How it was computed.
+    floor : Floor
+        The floor.
+    modes : Modes or None
+        Modes used, where the method used modes.
+    forces : ndarray of float, shape (n_steps, n_contacts, n_runs)
+        Contact forces [N].
+    """
+    found = [
+        *_lost_contact(forces),
+        *_time_step(method),
+        *_truncation(method),
+        *_rayleigh(method),
+        *(warning for crossing in crossings for warning in _extrapolation(crossing)),
+    ]
+    if isinstance(method.contact, Hat):
+        found += [w for crossing in crossings for w in _mesh_passing(crossing, floor, modes)]
+    return tuple(dict.fromkeys(found))
+
+
+def _lost_contact(forces: Array) -> list[FitnessWarning]:
+    pulled = forces < 0.0
+    if not pulled.any():
+        return []
+    share = pulled.any(axis=(0, 1)).mean()
+    return [
+        FitnessWarning(
+            subject="loss of contact",
+            message=f"a wheel would pull on the floor in {100 * share:.3g} % of the runs; "
+            "the linear vehicle cannot lift off, so those runs are not what would happen",
+        )
+    ]
+
+
+def _time_step(method: Interaction) -> list[FitnessWarning]:
+    dt, top = method.integration.dt, 80.0
+    nyquist = 0.5 / dt
+    if nyquist > top:
+        return []
+    extra = ""
+    if isinstance(method.integration, Newmark):
+        # Period of average acceleration, verification case V8: omega_num = 2/dt atan(omega dt/2)
+        x = np.pi * 10.0 * dt
+        extra = f"; its Newmark step stretches a 10 Hz period by {100 * (x / np.arctan(x) - 1):.0f} %"
+    return [
+        FitnessWarning(
+            subject="time step",
+            message=f"dt = {1e3 * dt:g} ms holds frequencies to {nyquist:g} Hz; bands above "
+            f"{nyquist / 1.25:.3g} Hz are not assessed{extra}",
+        )
+    ]
+
+
+def _truncation(method: Interaction) -> list[FitnessWarning]:
+    if not isinstance(method.integration, Modal):
+        return []
+    return [
+        FitnessWarning(
+            subject="modal truncation",
+            message=f"modes above {method.integration.f_max:g} Hz are left out, with their "
+            "static share: response close to the wheels is too small",
+        )
+    ]
+
+
+def _rayleigh(method: Interaction) -> list[FitnessWarning]:
+    if not isinstance(method.damping, Rayleigh):
+        return []
+    f = np.array([10.0, 20.0, 40.0, 80.0])
+    ratios = method.damping.ratios(2.0 * np.pi * f)
+    if ratios.max() < _HEAVY:
+        return []
+    text = ", ".join(f"{100 * z:.2g} % at {x:g} Hz" for x, z in zip(f, ratios, strict=True))
+    return [FitnessWarning(subject="damping", message=f"Rayleigh damping grows: {text}")]
+
+
+def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
+    if not isinstance(crossing.road, RoadClass):
+        return []
+    speed = float(crossing.route.law.speed(0.0))
+    n_max = crossing.band.n_max
+    if n_max > FITTED_RANGE[1] * (1 + 1e-9):
+        message = (
+            f"waves to {n_max:.3g} cycle/m are beyond ISO 8608's fitted range "
+            f"({FITTED_RANGE[1]:g}); the road above {speed * FITTED_RANGE[1]:.3g} Hz at "
+            f"{3.6 * speed:.3g} km/h is extrapolated"
+        )
+    else:
+        message = (
+            f"waves end at {n_max:.3g} cycle/m, which is {speed * n_max:.3g} Hz at "
+            f"{3.6 * speed:.3g} km/h; the road excites nothing above it"
+        )
+    return [FitnessWarning(subject=f"roughness band, {crossing.route.name}", message=message)]
+
+
+def _mesh_passing(
+    crossing: Crossing, floor: Floor, modes: Modes | None
+) -> list[FitnessWarning]:
+    size = _element_size(floor)
+    speed = float(crossing.route.law.speed(0.0))
+    passing = speed / size * np.arange(1, _HARMONICS + 1)
+    note = f"hat functions of {size:.3g} m are passed at {speed / size:.3g} Hz and its multiples"
+    if modes is not None:
+        f = modes.frequencies[:, None]
+        hits = np.unique(np.round(passing[(np.abs(f - passing) < _NEAR * f).any(axis=0)], 2))
+        if hits.size:
+            note += "; " + ", ".join(f"{hit:g} Hz" for hit in hits) + " lies on a mode"
+    return [FitnessWarning(subject=f"mesh passing, {crossing.route.name}", message=note)]
+
+
+def _element_size(floor: Floor) -> float:
+    groups = floor.shells or floor.beams
+    ends = floor.nodes[groups[0].elements[:, :2]]
+    return float(np.median(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))

@@ -1,0 +1,34 @@
+"""Model floors with flat shells, eccentric beams, springs and supports."""
+
+from trundle.structure.floor import (
+    DOF_NAMES,
+    BeamGroup,
+    Floor,
+    MirrorPlane,
+    PointMasses,
+    ShellGroup,
+    SpringGroup,
+)
+from trundle.structure.plan import EDGES, FloorPlan, Rectangle, build_floor
+from trundle.structure.reference import reference_plan, reference_unit
+from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
+
+__all__ = [
+    "CONCRETE",
+    "DOF_NAMES",
+    "EDGES",
+    "BeamGroup",
+    "BeamSection",
+    "Floor",
+    "FloorPlan",
+    "Material",
+    "MirrorPlane",
+    "PointMasses",
+    "Rectangle",
+    "ShellGroup",
+    "ShellSection",
+    "SpringGroup",
+    "build_floor",
+    "reference_plan",
+    "reference_unit",
+]

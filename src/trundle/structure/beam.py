@@ -1,0 +1,167 @@
+"""Form stiffness and mass of straight Timoshenko members with rigid offsets, all at once.
+
+The shape functions solve the unloaded Timoshenko beam exactly, so a static member needs no
+more than one element and there is no shear locking; with infinite shear areas they are the
+Bernoulli-Euler cubic.
+
+References
+----------
+J. S. Przemieniecki, Theory of Matrix Structural Analysis (1968), section 5.6.
+Z. Friedman and J. B. Kosmatka, Computers & Structures 47 (1993) 473-481.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._typing import Array
+from trundle.structure.frames import beam_frames, rotate_blocks
+from trundle.structure.sections import BeamSection
+
+__all__ = ["beam_mass", "beam_stiffness"]
+
+_GAUSS_4 = np.polynomial.legendre.leggauss(4)
+# Bending in the local x-z plane uses w and ry = -dw/dx; in the x-y plane v and rz = dv/dx.
+_PLANE_XZ, _SIGN_XZ = np.array([2, 4, 8, 10]), np.array([1.0, -1.0, 1.0, -1.0])
+_PLANE_XY, _SIGN_XY = np.array([1, 5, 7, 11]), np.array([1.0, 1.0, 1.0, 1.0])
+
+
+def beam_stiffness(
+    ends: Float[Array, "elements 2 3"],
+    section: BeamSection,
+    *,
+    offset: Float[Array, " 3"],
+    up: Float[Array, " 3"],
+) -> Float[Array, "elements 12 12"]:
+    """Form the stiffness matrices in global axes at the nodes.
+
+    Parameters
+    ----------
+    ends : ndarray of float, shape (n_elements, 2, 3)
+        Node coordinates [m].
+    section : BeamSection
+        Cross-section about its own centroid.
+    offset : ndarray of float, shape (3,)
+        From node to centroid, the same at both ends, in global axes [m]; a beam that hangs
+        below its slab has a negative z.
+    up : ndarray of float, shape (3,)
+        Direction that the section's depth points to.
+
+    Returns
+    -------
+    ndarray of float, shape (n_elements, 12, 12)
+        Per node ux, uy, uz [m], rx, ry, rz [rad].
+    """
+    lengths, frames = beam_frames(ends, up)
+    material = section.material
+    local = np.zeros((len(ends), 12, 12))
+    _add_bar(local, 0, material.elastic_modulus * section.area / lengths)
+    _add_bar(local, 3, material.shear_modulus * section.torsion_constant / lengths)
+    for plane, signs, inertia, shear_area in _planes(section):
+        rigidity = material.elastic_modulus * inertia
+        phi = _shear_parameter(rigidity, material.shear_modulus * shear_area, lengths)
+        block = _bending_stiffness(rigidity, phi, lengths)
+        local[np.ix_(range(len(ends)), plane, plane)] += block * np.outer(signs, signs)
+    return _with_offset(rotate_blocks(local, frames), offset)
+
+
+def beam_mass(
+    ends: Float[Array, "elements 2 3"],
+    section: BeamSection,
+    *,
+    offset: Float[Array, " 3"],
+    up: Float[Array, " 3"],
+) -> Float[Array, "elements 12 12"]:
+    """Form the consistent mass matrices, rotary inertia included, in global axes.
+
+    Parameters and shape as in `beam_stiffness`; masses in kg and kg m2.
+    """
+    lengths, frames = beam_frames(ends, up)
+    density = section.material.density
+    local = np.zeros((len(ends), 12, 12))
+    bar = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6.0
+    polar = section.inertia_y + section.inertia_z
+    for dof, mass_per_length in ((0, density * section.area), (3, density * polar)):
+        pair = np.array([dof, dof + 6])
+        local[np.ix_(range(len(ends)), pair, pair)] += (
+            mass_per_length * lengths[:, None, None] * bar
+        )
+    for plane, signs, inertia, shear_area in _planes(section):
+        rigidity = section.material.elastic_modulus * inertia
+        phi = _shear_parameter(rigidity, section.material.shear_modulus * shear_area, lengths)
+        block = _bending_mass(density * section.area, density * inertia, phi, lengths)
+        local[np.ix_(range(len(ends)), plane, plane)] += block * np.outer(signs, signs)
+    return _with_offset(rotate_blocks(local, frames), offset)
+
+
+def _planes(section: BeamSection) -> tuple[tuple[Array, Array, float, float], ...]:
+    return (
+        (_PLANE_XZ, _SIGN_XZ, section.inertia_y, section.shear_area_z),
+        (_PLANE_XY, _SIGN_XY, section.inertia_z, section.shear_area_y),
+    )
+
+
+def _add_bar(local: Array, dof: int, stiffness: Array) -> None:
+    local[:, dof, dof] += stiffness
+    local[:, dof + 6, dof + 6] += stiffness
+    local[:, dof, dof + 6] -= stiffness
+    local[:, dof + 6, dof] -= stiffness
+
+
+def _shear_parameter(rigidity: float, shear_rigidity: float, lengths: Array) -> Array:
+    """Return Phi = 12 E I / (G As L^2); zero for an infinite shear area."""
+    return 12.0 * rigidity / (shear_rigidity * lengths**2)
+
+
+def _bending_stiffness(rigidity: float, phi: Array, length: Array) -> Array:
+    """Return the 4 x 4 matrices for (w1, slope1, w2, slope2)."""
+    factor = rigidity / ((1.0 + phi) * length**3)
+    one = np.ones_like(length)
+    rows = [
+        [12 * one, 6 * length, -12 * one, 6 * length],
+        [6 * length, (4 + phi) * length**2, -6 * length, (2 - phi) * length**2],
+        [-12 * one, -6 * length, 12 * one, -6 * length],
+        [6 * length, (2 - phi) * length**2, -6 * length, (4 + phi) * length**2],
+    ]
+    return np.moveaxis(np.array(rows), -1, 0) * factor[:, None, None]
+
+
+def _bending_mass(line_mass: float, line_rotary: float, phi: Array, length: Array) -> Array:
+    """Integrate the exact static shape functions; four Gauss points are exact for them."""
+    mass = np.zeros((len(length), 4, 4))
+    for point, weight in zip(*_GAUSS_4, strict=True):
+        deflection, rotation = _shapes(0.5 * (1.0 + point), phi, length)
+        half = (0.5 * weight * length)[:, None, None]
+        mass += half * line_mass * deflection[:, :, None] * deflection[:, None, :]
+        mass += half * line_rotary * rotation[:, :, None] * rotation[:, None, :]
+    return mass
+
+
+def _shapes(x: float, phi: Array, length: Array) -> tuple[Array, Array]:
+    """Return deflection and section rotation at x (share of the length), shape (n, 4)."""
+    d = 1.0 + phi
+    deflection = [
+        (1 - 3 * x**2 + 2 * x**3 + phi * (1 - x)) / d,
+        length * (x - 2 * x**2 + x**3 + 0.5 * phi * (x - x**2)) / d,
+        (3 * x**2 - 2 * x**3 + phi * x) / d,
+        length * (-(x**2) + x**3 - 0.5 * phi * (x - x**2)) / d,
+    ]
+    rotation = [
+        6 * (-x + x**2) / (d * length),
+        (1 - 4 * x + 3 * x**2 + phi * (1 - x)) / d,
+        6 * (x - x**2) / (d * length),
+        (-2 * x + 3 * x**2 + phi * x) / d,
+    ]
+    return np.stack(deflection, axis=1), np.stack(rotation, axis=1)
+
+
+def _with_offset(matrices: Array, offset: Array) -> Array:
+    """Move from centroid to node dofs: u_centroid = u_node + rotation x offset."""
+    ex, ey, ez = (float(component) for component in offset)
+    link = np.eye(6)
+    link[0, 4], link[0, 5] = ez, -ey
+    link[1, 3], link[1, 5] = -ez, ex
+    link[2, 3], link[2, 4] = ey, -ex
+    transform = np.kron(np.eye(2), link)
+    return transform.T @ matrices @ transform

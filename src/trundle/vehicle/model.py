@@ -1,0 +1,170 @@
+"""Hold a linear vehicle that touches the ground at contact points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy import linalg
+
+from trundle._checks import frozen_array, set_frozen
+from trundle._typing import Array
+from trundle.dynamics import LinearSystem
+from trundle.errors import InputError, UnrestrainedModeError
+
+__all__ = ["GRAVITY", "Vehicle"]
+
+GRAVITY = 9.81
+"""Acceleration of gravity [m/s2]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Vehicle:
+    """Hold a linear multi-axle vehicle.
+
+    Displacements are measured from static equilibrium on level ground, up positive. Contact
+    j presses on the ground with ``f_j = static_j - k_j (e_j z - y_j) - c_j (e_j z' - y_j')``,
+    where y is the height of the ground under it and e_j a row of `contact_map`.
+
+    Attributes
+    ----------
+    name : str
+        Name for tables.
+    system : LinearSystem
+        Mass, damping, stiffness on level rigid ground; contact springs and dampers included.
+    contact_map : ndarray of float, shape (n_contacts, n_dofs)
+        Rows e_j: vehicle motion over each contact.
+    contact_stiffness : ndarray of float, shape (n_contacts,)
+        Stiffness between that motion and the ground [N/m].
+    contact_damping : ndarray of float, shape (n_contacts,)
+        Damping coefficient there [N s/m].
+    static_forces : ndarray of float, shape (n_contacts,)
+        Static contact forces, positive when pressing on the ground [N].
+    setback : ndarray of float, shape (n_contacts,)
+        Distance of each contact behind the front axle [m].
+    lateral : ndarray of float, shape (n_contacts,)
+        Distance of each contact to the left of the centre line [m].
+    contact_names : tuple of str
+        Names for tables and plots.
+    source : str
+        Where the numbers come from.
+    """
+
+    name: str
+    system: LinearSystem
+    contact_map: Float[Array, "contacts dofs"]
+    contact_stiffness: Float[Array, " contacts"]
+    contact_damping: Float[Array, " contacts"]
+    static_forces: Float[Array, " contacts"]
+    setback: Float[Array, " contacts"]
+    lateral: Float[Array, " contacts"]
+    contact_names: tuple[str, ...]
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        """Freeze arrays and check shapes and signs."""
+        if self.system.is_sparse:
+            raise InputError("a vehicle's matrices must be dense arrays")
+        n = len(self.contact_names)
+        contact_map = frozen_array(
+            "contact_map", self.contact_map, shape=(n, self.system.n_dofs)
+        )
+        vectors = {
+            name: frozen_array(name, getattr(self, name), shape=(n,))
+            for name in (
+                "contact_stiffness",
+                "contact_damping",
+                "static_forces",
+                "setback",
+                "lateral",
+            )
+        }
+        for name in ("contact_stiffness", "contact_damping"):
+            if np.any(vectors[name] < 0.0):
+                raise InputError(f"{name} must be 0 or more; got {vectors[name].tolist()}")
+        set_frozen(self, contact_map=contact_map, **vectors)
+
+    @property
+    def n_contacts(self) -> int:
+        """Number of contact points."""
+        return len(self.contact_names)
+
+    @property
+    def length(self) -> float:
+        """Distance from the first contact to the last [m]."""
+        return float(self.setback.max() - self.setback.min())
+
+    @property
+    def total_mass(self) -> float:
+        """Mass that the static contact forces carry [kg]."""
+        return float(self.static_forces.sum() / GRAVITY)
+
+    @property
+    def free_system(self) -> LinearSystem:
+        """The vehicle without its contact springs and dampers, as the contact solver sees it."""
+        e = self.contact_map
+        return LinearSystem(
+            mass=self.system.mass,
+            damping=self.system.damping - e.T @ (self.contact_damping[:, None] * e),
+            stiffness=self.system.stiffness - e.T @ (self.contact_stiffness[:, None] * e),
+        )
+
+    def natural_frequencies(self) -> Float[Array, " dofs"]:
+        """Return the undamped natural frequencies on rigid ground, rising [Hz].
+
+        Raises
+        ------
+        UnrestrainedModeError
+            The vehicle does not stand on its contacts.
+        """
+        squares = linalg.eigh(self.system.stiffness, self.system.mass, eigvals_only=True)
+        if squares[0] <= 1e-9 * squares[-1]:
+            raise UnrestrainedModeError(
+                f"vehicle {self.name!r} does not stand on its contacts: a motion has no stiffness"
+            )
+        return np.sqrt(squares) / (2.0 * np.pi)
+
+    def mode_shapes(self) -> tuple[Float[Array, " dofs"], Float[Array, "contacts dofs"]]:
+        """Return natural frequencies [Hz] and the motion over each contact, peak 1."""
+        squares, shapes = linalg.eigh(self.system.stiffness, self.system.mass)
+        seen = self.contact_map @ shapes
+        peak = seen[np.abs(seen).argmax(axis=0), np.arange(seen.shape[1])]
+        return np.sqrt(squares) / (2.0 * np.pi), seen / peak
+
+    def decay_rates(self) -> Float[Array, " modes"]:
+        """Return the decay rates of the free motions on rigid ground [1/s], rising."""
+        s = self.system
+        inverse = np.linalg.inv(np.asarray(s.mass))
+        n = s.n_dofs
+        state = np.block(
+            [[np.zeros((n, n)), np.eye(n)], [-inverse @ s.stiffness, -inverse @ s.damping]]
+        )
+        return np.sort(-np.linalg.eigvals(state).real)
+
+    def contact_force_transfer(
+        self, f: Float[Array, " lines"], *, speed: float
+    ) -> Float[Array, "lines contacts"]:
+        """Return the complex contact forces for a unit harmonic road on rigid ground [N/m].
+
+        Parameters
+        ----------
+        f : ndarray of float, shape (n_lines,)
+            Frequency felt by the wheel [Hz].
+        speed : float
+            Speed [m/s]; every axle meets the same road later by its setback.
+
+        Returns
+        -------
+        ndarray of complex, shape (n_lines, n_contacts)
+            Dynamic contact force per metre of road amplitude under the front axle.
+        """
+        w = 2.0 * np.pi * np.asarray(f)[:, None]
+        ground = np.exp(-1j * w * self.setback / speed)
+        link = self.contact_stiffness + 1j * w * self.contact_damping
+        s, e = self.system, self.contact_map
+        dynamic = (
+            s.stiffness + 1j * w[:, :, None] * s.damping - w[:, :, None] ** 2 * np.asarray(s.mass)
+        )
+        motion = np.linalg.solve(dynamic, ((link * ground) @ e)[:, :, None])[:, :, 0]
+        return -link * (motion @ e.T - ground)

@@ -201,9 +201,7 @@ def triangle_product(step: Array, triangle: Array) -> Array:
     return step @ triangle
 
 
-def _pick(
-    nu: Array, basis: Array, ritz: Array, wanted: int, f_max: float
-) -> tuple[Array, Array]:
+def _pick(nu: Array, basis: Array, ritz: Array, wanted: int, f_max: float) -> tuple[Array, Array]:
     eigenvalues = 1.0 / nu[:wanted] - _SHIFT
     found = int(np.count_nonzero(eigenvalues < (2.0 * np.pi * f_max) ** 2))
     if found != wanted:

@@ -178,9 +178,7 @@ class ModalPropagator:
     def finish(self, state: State, motion: Motion, force: Float[Array, "modes runs"]) -> State:
         """Return the state at the step's end, given its motion and the force there."""
         del state
-        acceleration = (
-            force - self._double * motion.velocity - self._square * motion.displacement
-        )
+        acceleration = force - self._double * motion.velocity - self._square * motion.displacement
         return State(
             displacement=motion.displacement,
             velocity=motion.velocity,

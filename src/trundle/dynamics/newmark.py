@@ -44,9 +44,7 @@ class Newmark:
         )
         lowest = 0.25 * (0.5 + self.gamma) ** 2
         remedy = "smaller values are stable only for short steps"
-        set_frozen(
-            self, beta=within("newmark beta", self.beta, lowest - 1e-12, 1.0, remedy=remedy)
-        )
+        set_frozen(self, beta=within("newmark beta", self.beta, lowest - 1e-12, 1.0, remedy=remedy))
 
     def __str__(self) -> str:
         """Describe the method for a report."""
@@ -85,7 +83,9 @@ class NewmarkPropagator:
     N. M. Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94.
     """
 
-    def __init__(self, system: LinearSystem, method: Newmark, *, backend: str | None = None):
+    def __init__(
+        self, system: LinearSystem, method: Newmark, *, backend: str | None = None
+    ) -> None:
         self.dt = method.dt
         self.method = method
         self.system = system

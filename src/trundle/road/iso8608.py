@@ -91,11 +91,11 @@ class RoadClass:
         """Displacement PSD at the reference frequency, Gd(n0) [m3]."""
         return class_limits(self.name)[1] * _LEVEL_FACTOR[self.level]
 
-    def displacement_psd(self, n: ArrayLike) -> Float[Array, "..."]:
+    def displacement_psd(self, n: ArrayLike) -> Float[Array, ...]:
         """Return the one-sided PSD Gd [m3] at spatial frequency n [cycle/m]."""
         return self.roughness * (np.asarray(n, float) / REFERENCE_FREQUENCY) ** -self.waviness
 
-    def displacement_psd_angular(self, angular: ArrayLike) -> Float[Array, "..."]:
+    def displacement_psd_angular(self, angular: ArrayLike) -> Float[Array, ...]:
         """Return the one-sided PSD Gd [m3/rad] at angular spatial frequency Omega [rad/m].
 
         The same power in other words: ``Gd(Omega) dOmega = Gd(n) dn``, so

@@ -68,7 +68,8 @@ class Profile:
         s, z = (np.asarray(values, float) for values in (station, elevation))
         slopes = np.diff(z) / np.diff(s)
         return cls(
-            station=np.repeat(s, 2)[1:-1], elevation=np.repeat(z, 2)[1:-1],
+            station=np.repeat(s, 2)[1:-1],
+            elevation=np.repeat(z, 2)[1:-1],
             slope=np.repeat(slopes, 2),
         )
 
@@ -98,7 +99,7 @@ class Profile:
         """Distance from first to last station [m]."""
         return float(self.station[-1] - self.station[0])
 
-    def at(self, station: ArrayLike) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+    def at(self, station: ArrayLike) -> tuple[Float[Array, ...], Float[Array, ...]]:
         """Return elevation [m] and slope [m/m] at any stations [m]."""
         s = np.asarray(station, float)
         inside = np.clip(s, self.station[0], self.station[-1])

@@ -15,7 +15,7 @@ __all__ = ["temporal_psd", "temporal_psd_two_sided"]
 
 def temporal_psd(
     road: RoadClass, f: ArrayLike, *, speed: float, derivative: int = 0
-) -> Float[Array, "..."]:
+) -> Float[Array, ...]:
     """Return the one-sided PSD in f of ground motion under a wheel at constant speed.
 
     Parameters
@@ -47,7 +47,7 @@ def temporal_psd(
 
 def temporal_psd_two_sided(
     road: RoadClass, omega: ArrayLike, *, speed: float, derivative: int = 0
-) -> Float[Array, "..."]:
+) -> Float[Array, ...]:
     """Return the two-sided PSD in omega, the form printed in the paper's equation 3.
 
     Half of the one-sided power lies at negative frequencies and df = domega / (2 pi), so

@@ -81,6 +81,10 @@ class ContactRows:
     load_share: Float[Array, " rows"]
     n_dofs: int
 
+    def used_dofs(self) -> Int[Array, " dofs"]:
+        """Return the dofs on which any row has a weight, rising."""
+        return np.unique(self.dofs[(self.value != 0.0) | (self.slope != 0.0)])
+
     def part(self, rows: slice) -> ContactRows:
         """Return some of the rows."""
         return ContactRows(
@@ -186,9 +190,7 @@ def _cubic(t: Array) -> tuple[Array, Array, Array, Array]:
     value = np.stack([0.25 * (1 - t) ** 2 * (2 + t), 0.25 * (1 + t) ** 2 * (2 - t)], axis=1)
     slope = np.stack([0.25 * (1 - t) ** 2 * (1 + t), 0.25 * (1 + t) ** 2 * (t - 1)], axis=1)
     d_value = np.stack([0.75 * (t**2 - 1), 0.75 * (1 - t**2)], axis=1)
-    d_slope = np.stack(
-        [0.25 * (3 * t**2 - 2 * t - 1), 0.25 * (3 * t**2 + 2 * t - 1)], axis=1
-    )
+    d_slope = np.stack([0.25 * (3 * t**2 - 2 * t - 1), 0.25 * (3 * t**2 + 2 * t - 1)], axis=1)
     return value, slope, d_value, d_slope
 
 
@@ -196,9 +198,7 @@ def _quad_weights(local: Array, corners: Array, shape: ContactShape) -> tuple[Ar
     """Return weights (n, 12) on (uz, rx, ry) of four nodes and their x, y gradients."""
     xi, eta = local[:, :1], local[:, 1:]
     linear = 0.25 * (1 + xi * _XI) * (1 + eta * _ETA)
-    d_linear = np.stack(
-        [0.25 * _XI * (1 + eta * _ETA), 0.25 * _ETA * (1 + xi * _XI)], axis=1
-    )
+    d_linear = np.stack([0.25 * _XI * (1 + eta * _ETA), 0.25 * _ETA * (1 + xi * _XI)], axis=1)
     if isinstance(shape, Hat):
         value = _spread(linear)
         natural = np.stack([_spread(d_linear[:, 0]), _spread(d_linear[:, 1])], axis=1)
@@ -214,6 +214,9 @@ def _spread(on_deflection: Array) -> Array:
     return weights.reshape(len(weights), -1)
 
 
+_Pair: TypeAlias = tuple[Array, Array]  # functions of xi and of eta, multiplied at a node
+
+
 def _hermite_quad(local: Array, corners: Array) -> tuple[Array, Array]:
     fx, gx, dfx, dgx = _cubic(local[:, 0])
     fy, gy, dfy, dgy = _cubic(local[:, 1])
@@ -222,17 +225,17 @@ def _hermite_quad(local: Array, corners: Array) -> tuple[Array, Array]:
     # dw/dx = -ry and dw/dy = rx.
     edges = [_node_edges(corners, axis) for axis in (0, 1)]
 
-    def combine(a: Array, b: Array, c: Array, d: Array, e: Array, f: Array) -> Array:
+    def combine(deflection: _Pair, along_xi: _Pair, along_eta: _Pair) -> Array:
+        on_xi, on_eta = (pair[0][:, i] * pair[1][:, j] for pair in (along_xi, along_eta))
         weights = np.empty((len(local), 4, 3))
-        weights[:, :, 0] = a[:, i] * b[:, j]
-        along_xi, along_eta = c[:, i] * d[:, j], e[:, i] * f[:, j]
-        weights[:, :, 1] = along_xi * edges[0][:, :, 1] + along_eta * edges[1][:, :, 1]
-        weights[:, :, 2] = -along_xi * edges[0][:, :, 0] - along_eta * edges[1][:, :, 0]
+        weights[:, :, 0] = deflection[0][:, i] * deflection[1][:, j]
+        weights[:, :, 1] = on_xi * edges[0][:, :, 1] + on_eta * edges[1][:, :, 1]
+        weights[:, :, 2] = -on_xi * edges[0][:, :, 0] - on_eta * edges[1][:, :, 0]
         return weights.reshape(len(local), 12)
 
-    value = combine(fx, fy, gx, fy, fx, gy)
-    d_xi = combine(dfx, fy, dgx, fy, dfx, gy)
-    d_eta = combine(fx, dfy, gx, dfy, fx, dgy)
+    value = combine((fx, fy), (gx, fy), (fx, gy))
+    d_xi = combine((dfx, fy), (dgx, fy), (dfx, gy))
+    d_eta = combine((fx, dfy), (gx, dfy), (fx, dgy))
     return value, np.stack([d_xi, d_eta], axis=1)
 
 

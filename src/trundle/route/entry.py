@@ -39,8 +39,8 @@ class Ramp:
         return -self.length
 
     def share(
-        self, station: Float[Array, "..."], route_length: float
-    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+        self, station: Float[Array, ...], route_length: float
+    ) -> tuple[Float[Array, ...], Float[Array, ...]]:
         """Return the share of the force that the floor carries, and its slope [1/m]."""
         before, after = station < 0.0, station > route_length
         outside = np.where(before, -station, np.where(after, station - route_length, 0.0))
@@ -78,8 +78,8 @@ class DriveIn:
         return 0.0
 
     def share(
-        self, station: Float[Array, "..."], route_length: float
-    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+        self, station: Float[Array, ...], route_length: float
+    ) -> tuple[Float[Array, ...], Float[Array, ...]]:
         """Return the share of the force that the floor carries, and its slope [1/m]."""
         x = np.clip(station / self.length, 0.0, 1.0)
         y = np.clip((route_length - station) / self.length, 0.0, 1.0)
@@ -113,8 +113,8 @@ class StaticStart:
         return vehicle_length
 
     def share(
-        self, station: Float[Array, "..."], route_length: float
-    ) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+        self, station: Float[Array, ...], route_length: float
+    ) -> tuple[Float[Array, ...], Float[Array, ...]]:
         """Return the share of the force that the floor carries, and its slope [1/m]."""
         share, slope = Ramp(length=self.exit_length).share(station, route_length)
         # A rear axle may stand a rounding error before the edge at the start.

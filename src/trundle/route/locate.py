@@ -51,9 +51,7 @@ class Deck:
         flat = self.corners.reshape(-1, 2)
         return flat.min(axis=0), flat.max(axis=0)
 
-    def find(
-        self, places: Float[Array, "n 2"]
-    ) -> tuple[Int[Array, " n"], Float[Array, "n 2"]]:
+    def find(self, places: Float[Array, "n 2"]) -> tuple[Int[Array, " n"], Float[Array, "n 2"]]:
         """Return the element under each place, and its coordinates in -1 to 1 there.
 
         Raises

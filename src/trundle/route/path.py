@@ -19,11 +19,11 @@ __all__ = ["ConstantSpeed", "Route", "SpeedLaw", "SteadyAcceleration"]
 class SpeedLaw(Protocol):
     """Give distance travelled and speed as functions of time."""
 
-    def distance(self, time: ArrayLike) -> Float[Array, "..."]:
+    def distance(self, time: ArrayLike) -> Float[Array, ...]:
         """Return the distance travelled since time 0 [m]; negative before it."""
         ...
 
-    def speed(self, time: ArrayLike) -> Float[Array, "..."]:
+    def speed(self, time: ArrayLike) -> Float[Array, ...]:
         """Return the speed [m/s]."""
         ...
 
@@ -48,11 +48,11 @@ class ConstantSpeed:
         """Check the speed."""
         set_frozen(self, value=positive("speed", self.value))
 
-    def distance(self, time: ArrayLike) -> Float[Array, "..."]:
+    def distance(self, time: ArrayLike) -> Float[Array, ...]:
         """Return V t [m]."""
         return self.value * np.asarray(time, float)
 
-    def speed(self, time: ArrayLike) -> Float[Array, "..."]:
+    def speed(self, time: ArrayLike) -> Float[Array, ...]:
         """Return V at every time [m/s]."""
         return np.full_like(np.asarray(time, float), self.value)
 
@@ -90,12 +90,12 @@ class SteadyAcceleration:
             t = np.minimum(t, -self.initial / self.acceleration)
         return t
 
-    def distance(self, time: ArrayLike) -> Float[Array, "..."]:
+    def distance(self, time: ArrayLike) -> Float[Array, ...]:
         """Return ``v0 t + a t^2 / 2`` [m]."""
         t = self._moving_time(time)
         return self.initial * t + 0.5 * self.acceleration * np.maximum(t, 0.0) ** 2
 
-    def speed(self, time: ArrayLike) -> Float[Array, "..."]:
+    def speed(self, time: ArrayLike) -> Float[Array, ...]:
         """Return ``v0 + a t`` [m/s]."""
         return self.initial + self.acceleration * np.maximum(self._moving_time(time), 0.0)
 

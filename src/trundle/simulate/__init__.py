@@ -1,6 +1,7 @@
 """Drive vehicles over floors: decoupled or coupled, one at a time or together."""
 
 from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
+from trundle.simulate._residual import StaticFlexibility
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.ensemble import PreparedFloor, contact_forces, ensemble, prepare
 from trundle.simulate.runs import Runs
@@ -17,6 +18,7 @@ __all__ = [
     "PreparedFloor",
     "Rayleigh",
     "Runs",
+    "StaticFlexibility",
     "contact_forces",
     "ensemble",
     "prepare",

@@ -6,7 +6,6 @@ from typing import Protocol
 
 import numpy as np
 from jaxtyping import Float
-from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import (
@@ -15,9 +14,9 @@ from trundle.dynamics import (
     Motion,
     NewmarkPropagator,
     State,
-    factorise,
 )
 from trundle.route import ContactRows
+from trundle.simulate._residual import StaticFlexibility, residual_block
 
 __all__ = ["ContactFloor", "FullFloor", "ModalFloor", "RigidGround"]
 
@@ -42,12 +41,19 @@ class ContactFloor(Protocol):
         """Return the motion at the step's end under known contact forces (none: zero)."""
         ...
 
-    def under_wheels(self, step: int, motion: Motion) -> tuple[Array, Array]:
-        """Return the floor's height and its rate under each moving wheel."""
+    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
+        """Return the floor's height and its rate under each moving wheel.
+
+        `before` holds the contact forces one step earlier.
+        """
         ...
 
     def compliance(self, step: int) -> tuple[Array, Array]:
         """Return the sinking and its rate under wheel i for a unit force of wheel j."""
+        ...
+
+    def static_sinking(self) -> Array:
+        """Return the static sinking under wheel i for a unit force of wheel j, at time 0."""
         ...
 
     def finish(
@@ -76,14 +82,17 @@ class RigidGround:
         del step, forces
         return Motion(displacement=state.displacement, velocity=state.velocity)
 
-    def under_wheels(self, step: int, motion: Motion) -> tuple[Array, Array]:
-        del step
+    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
+        del step, before
         still = np.zeros((self._n, motion.displacement.shape[1]))
         return still, still
 
     def compliance(self, step: int) -> tuple[Array, Array]:
         del step
         return np.zeros((self._n, self._n)), np.zeros((self._n, self._n))
+
+    def static_sinking(self) -> Array:
+        return np.zeros((self._n, self._n))
 
     def finish(
         self, step: int, state: State, motion: Motion, forces: Array, *, applied: bool
@@ -106,12 +115,17 @@ class ModalFloor:
         rows: ContactRows,
         speed: Float[Array, "steps contacts"],
         points: SparseMatrix,
+        *,
+        flexibility: StaticFlexibility | None,
     ) -> None:
         self._modes, self._propagator = modes, propagator
         self._rows, self._speed = rows, speed
         self._n = speed.shape[1]
         self._load_share = rows.load_share.reshape(-1, self._n)
         self._points = points @ modes.shapes
+        self._residual = (
+            None if flexibility is None else _Residual(rows, self._n, modes, flexibility)
+        )
         self._chunk_start = -1
         self._value = self._slope = np.zeros((0, 0, 0))
 
@@ -126,16 +140,29 @@ class ModalFloor:
             return self._propagator.predict(state)
         return self._propagator.predict(state, self._load(step, forces))
 
-    def under_wheels(self, step: int, motion: Motion) -> tuple[Array, Array]:
+    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
         value, slope = self._shapes_at(step)
         convective = self._speed[step][:, None] * (slope @ motion.displacement)
-        return value @ motion.displacement, value @ motion.velocity + convective
+        rate = value @ motion.velocity + convective
+        if self._residual is not None:
+            # The residual rises from its depth a step ago, as a wheel feels it.
+            rate = rate + (self._residual.sinking(step - 1) @ before) / self._propagator.dt
+        return value @ motion.displacement, rate
+
+    def static_sinking(self) -> Array:
+        value, _ = self._shapes_at(0)
+        sinking = (value / self._modes.omega**2) @ value.T * self._load_share[0]
+        return sinking if self._residual is None else sinking + self._residual.sinking(0)
 
     def compliance(self, step: int) -> tuple[Array, Array]:
         value, slope = self._shapes_at(step)
         unit = self._propagator.respond(self._load_share[step] * value.T)
         convective = self._speed[step][:, None] * (slope @ unit.displacement)
-        return value @ unit.displacement, value @ unit.velocity + convective
+        sinking, rate = value @ unit.displacement, value @ unit.velocity + convective
+        if self._residual is not None:
+            extra = self._residual.sinking(step)
+            sinking, rate = sinking + extra, rate + extra / self._propagator.dt
+        return sinking, rate
 
     def finish(
         self, step: int, state: State, motion: Motion, forces: Array, *, applied: bool
@@ -169,6 +196,41 @@ class ModalFloor:
         return self._value[step - start], self._slope[step - start]
 
 
+class _Residual:
+    """The static flexibility of the modes left out, between the wheels."""
+
+    def __init__(
+        self, rows: ContactRows, n_wheels: int, modes: Modes, flexibility: StaticFlexibility
+    ) -> None:
+        dofs = rows.used_dofs()
+        self._block = residual_block(flexibility, modes, dofs)
+        at = np.minimum(np.searchsorted(dofs, rows.dofs), len(dofs) - 1)
+        shape = (-1, n_wheels, rows.dofs.shape[1])
+        self._at, self._value = at.reshape(shape), rows.value.reshape(shape)
+        self._load_share = rows.load_share.reshape(-1, n_wheels)
+        self._known: dict[int, Array] = {}
+
+    def sinking(self, step: int) -> Array:
+        """Return what the residual adds to the sinking under wheel i for a force of j."""
+        if step not in self._known:
+            at = self._at[step].ravel()
+            value = _spread(self._value[step])
+            block = self._block[np.ix_(at, at)]
+            sinking = value @ block @ value.T * self._load_share[step]
+            # A step asks for itself and for the one before it, and never for an older one.
+            self._known = {k: v for k, v in self._known.items() if k == step - 1}
+            self._known[step] = sinking
+        return self._known[step]
+
+
+def _spread(weights: Array) -> Array:
+    """Return (n, n * width) with the weights of each of n wheels in its own block."""
+    n, width = weights.shape
+    out = np.zeros((n, n, width))
+    out[np.arange(n), np.arange(n)] = weights
+    return out.reshape(n, n * width)
+
+
 class FullFloor:
     """A floor in all its dofs, integrated directly.
 
@@ -183,17 +245,18 @@ class FullFloor:
         speed: Float[Array, "steps contacts"],
         points: SparseMatrix,
         *,
+        flexibility: StaticFlexibility,
         coupled: bool,
     ) -> None:
         self._propagator, self._points = propagator, points
+        self._static = flexibility
         self._speed, self._n_dofs = speed, rows.n_dofs
         self._n, self._width = speed.shape[1], rows.dofs.shape[1]
         shape = (-1, self._n, self._width)
         self._dofs = rows.dofs.reshape(shape)
         self._value, self._slope = rows.value.reshape(shape), rows.slope.reshape(shape)
         self._load_share = rows.load_share.reshape(-1, self._n)
-        used = rows.dofs[(rows.value != 0.0) | (rows.slope != 0.0)]
-        self._route_dofs = np.unique(used)
+        self._route_dofs = rows.used_dofs()
         # Unit solutions, one row a route dof, so that a step reads whole rows.
         self._unit = self._unit_solutions() if coupled else np.zeros((0, 0))
         self._unit_at_route = self._unit[:, self._route_dofs] if coupled else self._unit
@@ -201,17 +264,18 @@ class FullFloor:
     def start(self, n_runs: int, forces: Array | None) -> State:
         u = np.zeros((self._n_dofs, n_runs))
         if forces is not None:
-            # The static deflection is the one thing that needs the bare stiffness.
-            stiffness = sparse.csc_array(self._propagator.system.stiffness)
-            u = factorise(stiffness).solve(self._load(0, forces))
+            u = self._static.solve(self._load(0, forces))
         return self._propagator.start(u)
 
-    def predict(self, step: int, state: State, forces: Array | None) -> Motion:
-        return self._propagator.predict(
-            state, None if forces is None else self._load(step, forces)
-        )
+    def static_sinking(self) -> Array:
+        unit = self._static.solve(self._load(0, np.eye(self._n)))
+        return -np.einsum("cw,cwj->cj", self._value[0], unit[self._dofs[0]])
 
-    def under_wheels(self, step: int, motion: Motion) -> tuple[Array, Array]:
+    def predict(self, step: int, state: State, forces: Array | None) -> Motion:
+        return self._propagator.predict(state, None if forces is None else self._load(step, forces))
+
+    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
+        del before
         dofs = self._dofs[step]
         u, v = motion.displacement[dofs], motion.velocity[dofs]
         value, slope = self._value[step][:, None, :], self._slope[step][:, None, :]
@@ -219,7 +283,7 @@ class FullFloor:
         return height, rate + self._speed[step][:, None] * (slope @ u)[:, 0]
 
     def compliance(self, step: int) -> tuple[Array, Array]:
-        value, slope = (self._spread(weights[step]) for weights in (self._value, self._slope))
+        value, slope = (_spread(weights[step]) for weights in (self._value, self._slope))
         at = self._places(step)
         unit = self._unit_at_route[np.ix_(at, at)]
         pressed = unit @ value.T * self._load_share[step]
@@ -232,7 +296,7 @@ class FullFloor:
     ) -> State:
         if not applied:
             shared = self._load_share[step][:, None] * forces
-            load = self._spread(self._value[step]).T @ shared
+            load = _spread(self._value[step]).T @ shared
             change = -(self._unit[self._places(step)].T @ load)
             motion = Motion(
                 displacement=motion.displacement + change,
@@ -263,10 +327,3 @@ class FullFloor:
         """Return where the wheels' dofs stand among the route's; unused ones point anywhere."""
         at = np.searchsorted(self._route_dofs, self._dofs[step].ravel())
         return np.minimum(at, len(self._route_dofs) - 1)
-
-    def _spread(self, weights: Array) -> Array:
-        """Return (n_contacts, n_contacts * width) with each wheel's weights in its own block."""
-        out = np.zeros((self._n, self._n, self._width))
-        wheel = np.arange(self._n)
-        out[wheel, wheel] = weights
-        return out.reshape(self._n, -1)

@@ -53,6 +53,15 @@ class Record:
     acceleration: Float[Array, "steps points runs"]
     forces: Float[Array, "steps contacts runs"]
 
+    def plus(self, displacement: Array, velocity: Array, acceleration: Array) -> Record:
+        """Return the record with more motion at the points."""
+        return Record(
+            displacement=self.displacement + displacement,
+            velocity=self.velocity + velocity,
+            acceleration=self.acceleration + acceleration,
+            forces=self.forces,
+        )
+
 
 def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[State, Array]:
     """Drive on rigid ground up to time 0; return the vehicle's state and contact forces.
@@ -66,7 +75,7 @@ def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[
     forces = law.static - k * (e @ z - road.elevation[0])
     state = law.vehicle.start(z)
     for at in range(1, timeline.n_run_in + 1):
-        state, _, forces = _step(law, ground, (state, still), at, road, step=at)
+        state, _, forces = _step(law, ground, (state, still, forces), at, road, step=at)
     return state, forces
 
 
@@ -79,11 +88,7 @@ def static_start(
     ``f = static - k (E z - r + S f)`` are solved together.
     """
     e, k = law.contact_map, law.stiffness
-    unit = floor.start(len(k), np.eye(len(k)))
-    height, _ = floor.under_wheels(
-        0, Motion(displacement=unit.displacement, velocity=unit.velocity)
-    )
-    sink = -height
+    sink = floor.static_sinking()
     matrix = np.block(
         [[law.standing_stiffness, e.T @ (k * sink)], [k * e, np.eye(len(k)) + k * sink]]
     )
@@ -99,17 +104,16 @@ def drive(
     start: tuple[State, State, Array],
     timeline: Timeline,
     road: RoadUnderWheels,
+    *,
     progress: Progress | None = None,
 ) -> Record:
     """Step a coupled vehicle and floor over the record."""
-    vehicle_state, floor_state, forces = start
     n_steps = len(timeline.time) - timeline.n_run_in
-    record = _Recorder(n_steps, floor, floor_state, forces)
+    state = start
+    record = _Recorder(n_steps, floor, state[1], state[2])
     for step in range(1, n_steps):
-        vehicle_state, floor_state, forces = _step(
-            law, floor, (vehicle_state, floor_state), timeline.n_run_in + step, road, step=step
-        )
-        record.add(step, floor_state, forces, timeline)
+        state = _step(law, floor, state, timeline.n_run_in + step, road, step=step)
+        record.add(step, state[1], state[2], timeline)
         if progress is not None and step % 64 == 0:
             progress(step / n_steps)
     return record.done()
@@ -139,13 +143,13 @@ def load_floor(
 def _step(
     law: ContactLaw,
     floor: ContactFloor,
-    states: tuple[State, State],
+    state: tuple[State, State, Array],
     at: int,
     road: RoadUnderWheels,
     *,
     step: int,
 ) -> tuple[State, State, Array]:
-    """Advance both systems by one step and return their states and the contact forces.
+    """Advance vehicle state, floor state and contact forces by one step.
 
     `at` counts steps from the start of the run-in, as the road does; `step` counts those of
     the record, as the floor does.
@@ -154,10 +158,10 @@ def _step(
     system of n_contacts equations, the same for every run.
     """
     e, k, c = law.contact_map, law.stiffness, law.damping
-    vehicle_state, floor_state = states
+    vehicle_state, floor_state, before = state
     free = law.vehicle.predict(vehicle_state)
     motion = floor.predict(step, floor_state, None)
-    height, rate = floor.under_wheels(step, motion)
+    height, rate = floor.under_wheels(step, motion, before)
     sink, sink_rate = floor.compliance(step)
     lift = law.vehicle.respond(e.T)
     stiff = k * (e @ lift.displacement + sink) + c * (e @ lift.velocity + sink_rate)

@@ -77,9 +77,7 @@ def lay_out(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Time
             moving, clock = (clock >= 0.0).astype(float), np.maximum(clock, 0.0)
         front = crossing.lead + law.distance(clock)
         stations.append(front[:, None] - crossing.vehicle.setback)
-        speeds.append(
-            np.broadcast_to((law.speed(clock) * moving)[:, None], stations[-1].shape)
-        )
+        speeds.append(np.broadcast_to((law.speed(clock) * moving)[:, None], stations[-1].shape))
     return Timeline(
         time=time, n_run_in=n_run_in, station=np.hstack(stations), speed=np.hstack(speeds)
     )
@@ -101,7 +99,8 @@ def roads_under_wheels(
         at = columns.stop
         station, speed = timeline.station[:, columns], timeline.speed[:, columns]
         for run in range(n_runs):
-            profile = _profile_of(crossing, station, speed, timeline, seed, run)
+            rng = run_generator(seed, crossing.route.name, run)
+            profile = _profile_of(crossing, station, float(speed.max()), timeline, rng)
             z, slope = profile.at(station)
             elevation[:, columns, run] = z
             rate[:, columns, run] = speed * slope
@@ -109,24 +108,28 @@ def roads_under_wheels(
 
 
 def _profile_of(
-    crossing: Crossing, station: Array, speed: Array, timeline: Timeline, seed: int, run: int
+    crossing: Crossing,
+    station: Array,
+    speed: float,
+    timeline: Timeline,
+    rng: np.random.Generator,
 ) -> Profile:
     if isinstance(crossing.road, Profile):
         return crossing.road
     dt = float(timeline.time[1] - timeline.time[0])
-    limit = 0.5 / (float(speed.max()) * dt)
+    limit = 0.5 / (speed * dt)
     if crossing.band.n_max > limit * (1 + 1e-9):
         raise InputError(
             f"route {crossing.route.name!r}: roughness up to {crossing.band.n_max:g} cycle/m at "
-            f"{speed.max():.3g} m/s needs a time step of at most "
-            f"{0.5 / (crossing.band.n_max * speed.max()):.3g} s; got {dt:g} s: shorten dt or "
+            f"{speed:.3g} m/s needs a time step of at most "
+            f"{0.5 / (crossing.band.n_max * speed):.3g} s; got {dt:g} s: shorten dt or "
             f"lower n_max to {limit:.3g} cycle/m"
         )
     low, high = float(station.min()) - _MARGIN, float(station.max()) + _MARGIN
     return synthesise(
         crossing.road,
         length=high - low,
-        rng=run_generator(seed, crossing.route.name, run),
+        rng=rng,
         band=crossing.band,
         start=low,
     )
@@ -158,9 +161,7 @@ def operator_rows(
         for lateral in crossing.vehicle.lateral:
             route = crossing.route
             places[:, at], directions[:, at] = route.locate(station[:, at], lateral)
-            share[:, at], share_slope[:, at] = crossing.entry.share(
-                station[:, at], route.length
-            )
+            share[:, at], share_slope[:, at] = crossing.entry.share(station[:, at], route.length)
             at += 1
     rows = contact_rows(
         floor, places.reshape(-1, 2), directions.reshape(-1, 2), shape=shape, deck=deck

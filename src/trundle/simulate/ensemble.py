@@ -28,6 +28,7 @@ from trundle.errors import InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
 from trundle.simulate._floors import ContactFloor, FullFloor, ModalFloor, RigidGround
 from trundle.simulate._march import ContactLaw, Record, drive, load_floor, run_in, static_start
+from trundle.simulate._residual import StaticFlexibility, point_residual, residual_motion
 from trundle.simulate._schedule import (
     RoadUnderWheels,
     Timeline,
@@ -63,6 +64,8 @@ class PreparedFloor:
         The scheme with its coefficients.
     modes : Modes or None
         Natural modes, for `Modal`; a full floor has none.
+    flexibility : StaticFlexibility
+        Static deflections, for starts at rest and for the modes left out.
     """
 
     floor: Floor
@@ -70,6 +73,7 @@ class PreparedFloor:
     damping: Damping
     propagator: NewmarkPropagator | ModalPropagator
     modes: Modes | None
+    flexibility: StaticFlexibility
 
 
 def prepare(
@@ -78,6 +82,7 @@ def prepare(
     damping: Damping,
     *,
     modes: Modes | None = None,
+    flexibility: StaticFlexibility | None = None,
     progress: Progress | None = None,
 ) -> PreparedFloor:
     """Find modes, or factorise, once for all crossings of a floor.
@@ -92,9 +97,12 @@ def prepare(
         Damping of the floor.
     modes : Modes, optional
         Modes found before; they must reach as far as `integration` asks.
+    flexibility : StaticFlexibility, optional
+        Static deflections of the same floor found before.
     progress : callable, optional
         Told the share of modes found.
     """
+    flexibility = flexibility or StaticFlexibility(floor)
     if isinstance(integration, Modal):
         if modes is None or modes.f_max < integration.f_max:
             modes = natural_modes(
@@ -109,9 +117,12 @@ def prepare(
             damping=damping,
             propagator=propagator,
             modes=modes,
+            flexibility=flexibility,
         )
-    matrix = 0.0 * floor.mass if isinstance(damping, ModalRatio) else damping.matrix(
-        floor.mass, floor.stiffness
+    matrix = (
+        0.0 * floor.mass
+        if isinstance(damping, ModalRatio)
+        else damping.matrix(floor.mass, floor.stiffness)
     )
     system = LinearSystem(mass=floor.mass, damping=matrix, stiffness=floor.stiffness)
     return PreparedFloor(
@@ -120,6 +131,7 @@ def prepare(
         damping=damping,
         propagator=NewmarkPropagator(system, integration),
         modes=None,
+        flexibility=flexibility,
     )
 
 
@@ -183,7 +195,18 @@ def ensemble(
     coupled = isinstance(method, Coupled)
     reader = _point_rows(floor.floor, points)
     contact_floor = _contact_floor(floor, rows, timeline, reader, coupled=coupled)
-    record = _run(contact_floor, law, crossings, timeline, road, coupled, progress)
+    record = _run(
+        contact_floor,
+        law,
+        timeline,
+        road,
+        coupled=coupled,
+        static=isinstance(crossings[0].entry, StaticStart),
+        progress=progress,
+    )
+    if floor.modes is not None:
+        residual = point_residual(floor.flexibility, floor.modes, reader)
+        record = record.plus(*residual_motion(rows, record.forces, residual, dt))
     return Runs(
         time=timeline.time[timeline.n_run_in :],
         displacement=np.transpose(record.displacement, (2, 0, 1)),
@@ -211,34 +234,32 @@ def contact_forces(
     """
     timeline = lay_out((crossing,), integration.dt, duration)
     road = roads_under_wheels((crossing,), timeline, n_runs, seed)
-    record = _on_rigid_ground(_contact_law((crossing,), integration), timeline, road, None)
+    record = _on_rigid_ground(_contact_law((crossing,), integration), timeline, road)
     return timeline.time[timeline.n_run_in :], np.transpose(record.forces, (2, 0, 1))
 
 
 def _run(
     floor: ContactFloor,
     law: ContactLaw,
-    crossings: tuple[Crossing, ...],
     timeline: Timeline,
     road: RoadUnderWheels,
+    *,
     coupled: bool,
+    static: bool,
     progress: Progress | None,
 ) -> Record:
-    static = isinstance(crossings[0].entry, StaticStart)
     if not coupled:
-        forces = _on_rigid_ground(law, timeline, road, progress).forces
+        forces = _on_rigid_ground(law, timeline, road).forces
         return load_floor(floor, forces, timeline, static=static, progress=progress)
     if static:
-        return drive(law, floor, static_start(law, floor, road), timeline, road, progress)
+        start = static_start(law, floor, road)
+        return drive(law, floor, start, timeline, road, progress=progress)
     vehicle, forces = run_in(law, timeline, road)
     still = floor.start(road.elevation.shape[2], None)
-    return drive(law, floor, (vehicle, still, forces), timeline, road, progress)
+    return drive(law, floor, (vehicle, still, forces), timeline, road, progress=progress)
 
 
-def _on_rigid_ground(
-    law: ContactLaw, timeline: Timeline, road: RoadUnderWheels, progress: Progress | None
-) -> Record:
-    del progress
+def _on_rigid_ground(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> Record:
     ground = RigidGround(len(law.stiffness))
     vehicle, forces = run_in(law, timeline, road)
     still = ground.start(road.elevation.shape[2], None)
@@ -276,8 +297,22 @@ def _contact_floor(
     speed = timeline.speed[timeline.n_run_in :]
     if isinstance(prepared.propagator, ModalPropagator):
         assert prepared.modes is not None  # a modal propagator is only made with modes
-        return ModalFloor(prepared.modes, prepared.propagator, rows, speed, points)
-    return FullFloor(prepared.propagator, rows, speed, points, coupled=coupled)
+        return ModalFloor(
+            prepared.modes,
+            prepared.propagator,
+            rows,
+            speed,
+            points,
+            flexibility=prepared.flexibility if coupled else None,
+        )
+    return FullFloor(
+        prepared.propagator,
+        rows,
+        speed,
+        points,
+        flexibility=prepared.flexibility,
+        coupled=coupled,
+    )
 
 
 def _point_rows(floor: Floor, points: Mapping[str, tuple[float, float]]) -> SparseMatrix:

@@ -76,7 +76,9 @@ def _time_step(method: Interaction) -> list[FitnessWarning]:
     if isinstance(method.integration, Newmark):
         # Period of average acceleration, verification case V8: omega_num = 2/dt atan(omega dt/2)
         x = np.pi * 10.0 * dt
-        extra = f"; its Newmark step stretches a 10 Hz period by {100 * (x / np.arctan(x) - 1):.0f} %"
+        extra = (
+            f"; its Newmark step stretches a 10 Hz period by {100 * (x / np.arctan(x) - 1):.0f} %"
+        )
     return [
         FitnessWarning(
             subject="time step",
@@ -92,8 +94,8 @@ def _truncation(method: Interaction) -> list[FitnessWarning]:
     return [
         FitnessWarning(
             subject="modal truncation",
-            message=f"modes above {method.integration.f_max:g} Hz are left out, with their "
-            "static share: response close to the wheels is too small",
+            message=f"modes above {method.integration.f_max:g} Hz are left out; they follow the "
+            "wheels without delay (static residual flexibility), not with their own resonance",
         )
     ]
 
@@ -128,9 +130,7 @@ def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
     return [FitnessWarning(subject=f"roughness band, {crossing.route.name}", message=message)]
 
 
-def _mesh_passing(
-    crossing: Crossing, floor: Floor, modes: Modes | None
-) -> list[FitnessWarning]:
+def _mesh_passing(crossing: Crossing, floor: Floor, modes: Modes | None) -> list[FitnessWarning]:
     size = _element_size(floor)
     speed = float(crossing.route.law.speed(0.0))
     passing = speed / size * np.arange(1, _HARMONICS + 1)

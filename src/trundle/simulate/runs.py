@@ -64,9 +64,7 @@ class Runs:
     def point(self, name: str) -> int:
         """Return the place of a point along the last axis, by its name."""
         if name not in self.point_names:
-            raise InputError(
-                f"no point {name!r}; the points are {', '.join(self.point_names)}"
-            )
+            raise InputError(f"no point {name!r}; the points are {', '.join(self.point_names)}")
         return self.point_names.index(name)
 
     def peak_acceleration(self) -> Float[Array, "runs points"]:
@@ -83,8 +81,7 @@ class Runs:
     def __str__(self) -> str:
         """Summarise the ensemble in a few lines."""
         lines = [
-            f"{self.n_runs} runs, {len(self.time)} steps of {1e3 * self.dt:g} ms, "
-            f"seed {self.seed}",
+            f"{self.n_runs} runs, {len(self.time)} steps of {1e3 * self.dt:g} ms, seed {self.seed}",
             self.method,
         ]
         for i, name in enumerate(self.point_names):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -184,7 +185,7 @@ def _mesh_line(extent: tuple[float, float], lines: list[Array], size: float) -> 
     hard = np.unique(np.round(np.concatenate([np.array(extent), *lines]) / _SNAP)) * _SNAP
     parts = [
         np.linspace(low, high, int(np.ceil((high - low) / size - _SNAP)) + 1)[:-1]
-        for low, high in zip(hard[:-1], hard[1:], strict=True)
+        for low, high in pairwise(hard)
     ]
     return np.concatenate([*parts, hard[-1:]])
 
@@ -246,8 +247,7 @@ def _on_mirror(plan: FloorPlan, axis: str, station: float) -> bool:
     low, high = plan.x_extent if axis == "x" else plan.y_extent
     sides = ((f"{axis}_min", low), (f"{axis}_max", high))
     return any(
-        plan.edges.get(edge) == "symmetry" and abs(station - place) < _SNAP
-        for edge, place in sides
+        plan.edges.get(edge) == "symmetry" and abs(station - place) < _SNAP for edge, place in sides
     )
 
 
@@ -261,9 +261,7 @@ def _columns(
     for x_station in plan.x_lines if column else ():
         for y_station in plan.y_lines:
             head = int(grid[_at(y, y_station), _at(x, x_station)])
-            mirror = 0.5 ** (
-                _on_mirror(plan, "x", x_station) + _on_mirror(plan, "y", y_station)
-            )
+            mirror = 0.5 ** (_on_mirror(plan, "x", x_station) + _on_mirror(plan, "y", y_station))
             for height in heights:
                 new = np.arange(next_node, next_node + _COLUMN_ELEMENTS)
                 next_node += _COLUMN_ELEMENTS

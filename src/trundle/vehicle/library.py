@@ -79,9 +79,7 @@ def container_truck_40ft() -> Vehicle:
             ),
         ),
         lumped=(
-            LumpedMass(
-                mass=drive_load - (1 - share) * trailer, body=1, setback=tractor_wheelbase
-            ),
+            LumpedMass(mass=drive_load - (1 - share) * trailer, body=1, setback=tractor_wheelbase),
         ),
         axles=tuple(
             Axle(

@@ -67,9 +67,7 @@ class Vehicle:
         if self.system.is_sparse:
             raise InputError("a vehicle's matrices must be dense arrays")
         n = len(self.contact_names)
-        contact_map = frozen_array(
-            "contact_map", self.contact_map, shape=(n, self.system.n_dofs)
-        )
+        contact_map = frozen_array("contact_map", self.contact_map, shape=(n, self.system.n_dofs))
         vectors = {
             name: frozen_array(name, getattr(self, name), shape=(n,))
             for name in (

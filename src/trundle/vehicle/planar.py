@@ -170,7 +170,9 @@ def build_vehicle(
     rows = _Rows(bodies, coordinates, size)
     mass, damping, stiffness = (np.zeros((size, size)) for _ in range(3))
     for number, body in enumerate(bodies):
-        for column, value in zip(coordinates[number], (body.mass, body.pitch_inertia), strict=False):
+        for column, value in zip(
+            coordinates[number], (body.mass, body.pitch_inertia), strict=False
+        ):
             mass[column, column] += value
     for part in lumped:
         row = rows.at(part.body, part.setback)

@@ -1,0 +1,134 @@
+"""Offer trundle on the command line; every command is a few lines over study and report."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from trundle import __version__
+from trundle.errors import ComputationError, InputError
+
+__all__ = ["app", "main"]
+
+BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
+"""Exit codes: input that breaks a rule, mathematics that failed, Ctrl-C."""
+
+app = typer.Typer(
+    name="trundle",
+    help="From a vehicle on a rough road to a vibration class on the floor plan.\n\n"
+    "Start with 'trundle new unit.toml', look it over with 'trundle check unit.toml', and run "
+    "it with 'trundle run unit.toml': tables on the screen, and a results folder with "
+    "report.html, results.zarr, summary.csv and figures.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+StudyPath = Annotated[Path, typer.Argument(help="Study file (TOML).", metavar="STUDY")]
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(f"trundle {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show version.")
+    ] = False,
+) -> None:
+    del version
+
+
+@app.command()
+def run(
+    study: StudyPath,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Results folder. [default: STUDY's name + '-results']"),
+    ] = None,
+) -> None:
+    """Run a study: progress bars, tables on the screen, a results folder with report.html.
+
+    The folder appears only when everything is done; Ctrl-C leaves what was there before.
+    """
+    from trundle.cli import run_command
+
+    run_command.run(study, out or Path(f"{study.stem}-results"))
+
+
+@app.command()
+def check(study: StudyPath) -> None:
+    """Check a study: every mistake at once with its remedy, or a summary and a plan sketch."""
+    from trundle.cli import commands
+
+    commands.check(study)
+
+
+@app.command()
+def new(
+    path: Annotated[Path, typer.Argument(help="Study file to make.", metavar="STUDY")],
+) -> None:
+    """Make a commented study file to start from."""
+    from trundle.cli import commands
+
+    commands.new(path)
+
+
+@app.command()
+def modes(
+    study: StudyPath,
+    f_max: Annotated[
+        str, typer.Option("--f-max", help="Show the modes below this frequency.")
+    ] = "10 Hz",
+) -> None:
+    """List the natural frequencies of a study's floor, their count proved by inertia."""
+    from trundle.cli import commands
+
+    commands.modes(study, f_max)
+
+
+@app.command()
+def criteria() -> None:
+    """List the vibration criteria with their limits, range, source and confidence."""
+    from trundle.cli import commands
+
+    commands.criteria()
+
+
+@app.command()
+def vehicles() -> None:
+    """List the ready vehicles with axle loads, frequencies and source."""
+    from trundle.cli import commands
+
+    commands.vehicles()
+
+
+def main() -> None:
+    """Run the command line; turn errors into messages and exit codes."""
+    signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        app()
+    except InputError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(BAD_INPUT)
+    except ComputationError as error:
+        print(f"error: the computation failed: {error}", file=sys.stderr)
+        sys.exit(FAILED)
+    except KeyboardInterrupt:
+        print("interrupted: nothing was written", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+    except BrokenPipeError:
+        sys.exit(FAILED)
+
+
+def _interrupt(number: int, frame: object) -> None:
+    del number, frame
+    raise KeyboardInterrupt

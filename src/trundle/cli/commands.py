@@ -1,0 +1,135 @@
+"""Do what each command does; imported only once a command is known, to start quickly."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+from trundle.cli.screen import print_table, progress_bar
+from trundle.cli.sketch import plan_sketch
+from trundle.criteria import Criterion, all_criteria
+from trundle.dynamics import natural_modes
+from trundle.errors import InputError
+from trundle.study.build import load_study
+from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
+from trundle.vehicle import GRAVITY, VEHICLES
+
+__all__ = ["check", "criteria", "modes", "new", "vehicles"]
+
+
+def check(path: Path) -> None:
+    """Check a study and print what it would do."""
+    study = load_study(path)
+    cells = len(study.cases) * len(study.roads) * len(study.methods)
+    print(f"{path}: no mistakes\n\n{study.title}")
+    print(
+        f"floor: {study.floor.name}, {len(study.floor.nodes)} nodes, "
+        f"{study.floor.n_dofs} degrees of freedom, "
+        f"{study.floor.moving_mass() / 1e3:.0f} t moving vertically"
+    )
+    print(f"work:  {cells} cells of {study.runs} runs, records of {study.duration:g} s")
+    for method in study.methods:
+        print(f"method {method.name!r}: {method.interaction}; entry: {method.entry}")
+    print(plan_sketch(study))
+
+
+def new(path: Path) -> None:
+    """Write the template study."""
+    if path.exists():
+        raise InputError(f"{path}: this file exists; choose another name")
+    if not path.absolute().parent.is_dir():
+        raise InputError(f"{path}: there is no folder {path.absolute().parent}; make it first")
+    template = resources.files("trundle.study").joinpath("template.toml").read_text("utf-8")
+    try:
+        path.write_text(template, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror})") from None
+    print(f"{path}: written; next: trundle check {path}")
+
+
+def modes(path: Path, f_max: str) -> None:
+    """Print the natural frequencies of a study's floor."""
+    limit = _frequency(f_max)
+    floor = load_study(path).floor
+    with progress_bar() as tell:
+        found = natural_modes(
+            floor.mass,
+            floor.stiffness,
+            f_max=limit,
+            progress=lambda share: tell(f"modes below {limit:g} Hz", share),
+        )
+    participation = found.shapes.T @ (floor.mass @ floor.rigid_vector(2))
+    print_table(
+        f"{floor.name}: {found.n_modes} modes below {limit:g} Hz",
+        ("mode", "f [Hz]", "vertical effective mass [t]", "residual"),
+        (
+            (str(i + 1), f"{f:.3f}", f"{participation[i] ** 2 / 1e3:.1f}", f"{residual:.0e}")
+            for i, (f, residual) in enumerate(zip(found.frequencies, found.residuals, strict=True))
+        ),
+    )
+    print("The count agrees with Sylvester's law of inertia: none is missing.")
+
+
+def criteria() -> None:
+    """Print the criteria that ship with trundle."""
+    print_table(
+        "Vibration criteria",
+        ("name", "also", "limits", "quantity", "axis"),
+        (
+            (
+                criterion.name,
+                ", ".join(criterion.aliases),
+                _corners(criterion),
+                criterion.quantity.replace("_", " "),
+                criterion.axis,
+            )
+            for criterion in all_criteria()
+        ),
+        text_columns=5,
+    )
+    for source, confidence in dict.fromkeys((c.source, c.confidence) for c in all_criteria()):
+        print(f"source: {source}\n        confidence: {confidence}")
+
+
+def vehicles() -> None:
+    """Print the ready vehicles."""
+    for name, build in VEHICLES.items():
+        vehicle = build()
+        print_table(
+            f"{name}: {vehicle.total_mass / 1e3:.2f} t",
+            ("contact", "behind front [m]", "static load [t]", "k [MN/m]", "c [kN s/m]"),
+            (
+                (
+                    contact,
+                    f"{vehicle.setback[i]:.2f}",
+                    f"{vehicle.static_forces[i] / GRAVITY / 1e3:.2f}",
+                    f"{vehicle.contact_stiffness[i] / 1e6:.4g}",
+                    f"{vehicle.contact_damping[i] / 1e3:.4g}",
+                )
+                for i, contact in enumerate(vehicle.contact_names)
+            ),
+        )
+        frequencies = ", ".join(f"{f:.2f}" for f in vehicle.natural_frequencies())
+        print(f"natural frequencies on rigid ground: {frequencies} Hz")
+        print(f"source: {vehicle.source}\n")
+
+
+def _corners(criterion: Criterion) -> str:
+    velocity = criterion.quantity == "band_rms_velocity"
+    unit, scale = ("um/s", MICROMETRE_PER_SECOND) if velocity else ("gal", GAL)
+    if criterion.frequencies[0] == 0.0:
+        return f"{criterion.limits[0] / scale:g} {unit} at all frequencies"
+    return ", ".join(
+        f"{limit / scale:g} {unit} at {f:g} Hz"
+        for f, limit in zip(criterion.frequencies, criterion.limits, strict=True)
+    )
+
+
+def _frequency(text: str) -> float:
+    try:
+        value = to_si(text, "frequency")
+    except InputError as error:
+        raise InputError(f"--f-max {text!r}: {error}") from None
+    if value <= 0.0:
+        raise InputError(f"--f-max {text!r}: must be greater than 0")
+    return value

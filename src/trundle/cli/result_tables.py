@@ -1,0 +1,103 @@
+"""Print the tables of a finished study."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trundle.cli.screen import print_table
+from trundle.report import bound_rows, comparison_rows, summary_rows, verdict_matrix
+from trundle.study.run import StudyResult
+
+__all__ = ["print_result"]
+
+
+def print_result(result: StudyResult) -> None:
+    """Print the tables of a finished study."""
+    if result.study.printed:
+        _print_comparison(result)
+    else:
+        _print_summary(result)
+    bounds = bound_rows(result)
+    if bounds:
+        headings = ("bound", "ours by", "class", "method", "a printed [gal]", "a ours [gal]")
+        print_table(
+            "Table 3: upper bounds, ours from medians",
+            (*headings, "v printed [um/s]", "v ours [um/s]"),
+            (
+                (
+                    row.bound,
+                    row.rule,
+                    row.road,
+                    row.method,
+                    f"{row.printed_peak:.3g}",
+                    f"{row.peak:.3g}",
+                    f"{row.printed_rms:.5g}",
+                    f"{row.rms:.3g}",
+                )
+                for row in bounds
+            ),
+            text_columns=4,
+        )
+    _print_verdicts(result)
+
+
+def _print_comparison(result: StudyResult) -> None:
+    headings = ("road", "class", "method", "a printed [gal]", "a ours [gal]", "falls at")
+    print_table(
+        f"Table 2: printed values beside ours, median (5-95 %) of {result.study.runs} runs",
+        (*headings, "v printed [um/s]", "v ours [um/s]", "falls at"),
+        (
+            (
+                row.case,
+                row.road,
+                row.method,
+                f"{row.printed_peak:.3g}",
+                _spread(row.peak),
+                f"{row.peak_rank:.0f} %",
+                f"{row.printed_rms:.5g}",
+                _spread(row.rms),
+                f"{row.rms_rank:.0f} %",
+            )
+            for row in comparison_rows(result)
+        ),
+        text_columns=3,
+    )
+
+
+def _print_summary(result: StudyResult) -> None:
+    print_table(
+        f"Median (5-95 %) of {result.study.runs} runs",
+        ("vehicle on", "class", "method", "point", "peak a [gal]", "record RMS v [um/s]"),
+        (
+            (row.case, row.road, row.method, row.point, _spread(row.peak), _spread(row.rms))
+            for row in summary_rows(result)
+        ),
+        text_columns=4,
+    )
+
+
+def _spread(values: tuple[float, float, float]) -> str:
+    low, middle, high = values
+    return f"{middle:.3g} ({low:.3g}-{high:.3g})"
+
+
+def _print_verdicts(result: StudyResult) -> None:
+    columns, matrix = verdict_matrix(result)
+    assessment = result.study.assessment
+    if assessment is None:
+        return
+    print_table(
+        f"Verdict at {assessment.percentile:g} % of the runs, averaging {assessment.averaging}; "
+        "margin = limit / level",
+        ("criterion", *columns),
+        (
+            (
+                title,
+                *(
+                    v.status if np.isnan(v.margin) else f"{v.status} {v.margin:.2f}"
+                    for v in verdicts
+                ),
+            )
+            for title, verdicts in matrix
+        ),
+    )

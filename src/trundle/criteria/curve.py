@@ -1,0 +1,142 @@
+"""Hold criterion curves as data, with source and range."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cache
+from importlib import resources
+from typing import Literal, Self, TypeAlias
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._checks import frozen_array, set_frozen
+from trundle._typing import Array
+from trundle.errors import InputError
+
+__all__ = ["VC", "Criterion", "Quantity", "all_criteria", "find_criterion"]
+
+Quantity: TypeAlias = Literal["band_rms_velocity", "peak_acceleration"]
+"""What a curve limits: RMS velocity in one-third-octave bands, or 0-peak acceleration."""
+
+_FILES = ("vc.toml", "acceleration.toml")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Criterion:
+    """Hold one limit curve.
+
+    Attributes
+    ----------
+    name, title : str
+        Short name for study files, and title for reports.
+    quantity : {"band_rms_velocity", "peak_acceleration"}
+        What it limits.
+    frequencies : ndarray of float, shape (n_points,)
+        Corner frequencies, rising [Hz].
+    limits : ndarray of float, shape (n_points,)
+        Limits there [m/s] or [m/s2]; straight between corners on log-log axes.
+    axis : str
+        Direction that it is meant for.
+    averaging : str
+        Averaging rule of its values.
+    source, confidence : str
+        Where the numbers come from, and how sure they are.
+    aliases : tuple of str
+        Other names.
+    """
+
+    name: str
+    title: str
+    quantity: Quantity
+    frequencies: Float[Array, " points"]
+    limits: Float[Array, " points"]
+    axis: str
+    averaging: str
+    source: str
+    confidence: str
+    aliases: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Freeze the corners; the last may be at infinity."""
+        frequencies = np.array(self.frequencies, dtype=float)
+        if len(frequencies) < 2 or np.any(np.diff(frequencies) <= 0.0):
+            raise InputError(f"criterion {self.name!r}: frequencies must rise")
+        frequencies.setflags(write=False)
+        limits = frozen_array("limits", self.limits, shape=frequencies.shape)
+        if np.any(limits <= 0.0):
+            raise InputError(f"criterion {self.name!r}: limits must be greater than 0")
+        set_frozen(self, frequencies=frequencies, limits=limits)
+
+    def limit(self, f: Float[Array, " lines"]) -> Float[Array, " lines"]:
+        """Return the limit at frequencies [Hz]; NaN outside the curve's range."""
+        f = np.asarray(f, float)
+        # A band belongs to the curve when its nominal frequency does: 79.4 Hz is "80 Hz".
+        inside = (f >= self.frequencies[0] * 0.98) & (f <= self.frequencies[-1] * 1.02)
+        if np.ptp(self.limits) == 0.0:
+            return np.where(inside, self.limits[0], np.nan)
+        value = np.exp(np.interp(np.log(f), np.log(self.frequencies), np.log(self.limits)))
+        return np.where(inside, value, np.nan)
+
+    def flattened(self) -> Self:
+        """Return the curve with its value at 8 Hz held constant down to 1 Hz.
+
+        This is the paper's second branch, for equipment with pneumatic isolation.
+        """
+        level = float(self.limit(np.array([8.0]))[0])
+        return replace(
+            self,
+            title=f"{self.title} (flat to 1 Hz)",
+            frequencies=np.array([1.0, self.frequencies[-1]]),
+            limits=np.array([level, level]),
+        )
+
+
+@cache
+def all_criteria() -> tuple[Criterion, ...]:
+    """Return every criterion that ships with trundle, in the order of its files."""
+    return tuple(curve for name in _FILES for curve in _read(name))
+
+
+def find_criterion(name: str) -> Criterion:
+    """Return a criterion by name or alias, in any case.
+
+    Raises
+    ------
+    InputError
+        No such criterion; the message lists what there is.
+    """
+    wanted = name.strip().lower()
+    for criterion in all_criteria():
+        if wanted in {known.lower() for known in (criterion.name, *criterion.aliases)}:
+            return criterion
+    known = ", ".join(criterion.name for criterion in all_criteria())
+    raise InputError(f"no criterion {name!r}; there are {known}")
+
+
+def _read(file: str) -> Iterable[Criterion]:
+    text = resources.files("trundle.criteria").joinpath("data", file).read_text("utf-8")
+    data = tomllib.loads(text)
+    for entry in data["curve"]:
+        values = {**data["common"], **entry}
+        points = np.array(values.pop("points"), dtype=float)
+        values["aliases"] = tuple(values["aliases"])
+        yield Criterion(frequencies=points[:, 0], limits=points[:, 1], **values)
+
+
+VC_NAMES = (
+    "workshop",
+    "office",
+    "residential-day",
+    "operating-theatre",
+    "VC-A",
+    "VC-B",
+    "VC-C",
+    "VC-D",
+    "VC-E",
+)
+
+VC: tuple[Criterion, ...] = tuple(find_criterion(name) for name in VC_NAMES)
+"""The nine generic curves, widest first."""

@@ -1,0 +1,66 @@
+"""Make figures of one look: colour-blind-safe, without a screen, saved as PNG and SVG."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+__all__ = ["COLOURS", "STYLE", "Picture", "new_figure", "save"]
+
+# Okabe and Ito's palette (2008), told apart by nearly everybody.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F")
+
+STYLE = {
+    "font.size": 9.0,
+    "axes.titlesize": 10.0,
+    "axes.grid": True,
+    "grid.color": "#D9D9D9",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "lines.linewidth": 1.1,
+    "svg.hashsalt": "trundle",
+    "svg.fonttype": "none",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Picture:
+    """Hold a finished figure for the report.
+
+    Attributes
+    ----------
+    name : str
+        File name without suffix.
+    title : str
+        Heading.
+    caption : str
+        What is seen, and what it was computed from.
+    """
+
+    name: str
+    title: str
+    caption: str
+
+
+def new_figure(
+    width: float = 7.2, height: float = 3.6, *, rows: int = 1, columns: int = 1, **options: object
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure [inch] and its axes in reading order."""
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, columns, squeeze=False, **options)
+    return figure, list(axes.ravel())
+
+
+def save(figure: Figure, folder: Path, name: str) -> None:
+    """Write a figure as PNG and SVG, inside the style in which it was drawn."""
+    figure.savefig(folder / f"{name}.png", dpi=130)
+    figure.savefig(folder / f"{name}.svg", metadata={"Date": None})

@@ -1,0 +1,190 @@
+"""Draw floors: plan with routes, section, mesh, mode shapes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
+from mpl_toolkits.mplot3d.art3d import Line3DCollection
+
+from trundle._typing import Array
+from trundle.dynamics import Modes
+from trundle.report.canvas import COLOURS, new_figure
+from trundle.route import Route
+from trundle.structure import Floor, FloorPlan
+
+__all__ = ["mesh_figure", "modes_figure", "plan_figure", "section_figure"]
+
+
+def plan_figure(
+    plan: FloorPlan, routes: Mapping[str, Route], points: Mapping[str, tuple[float, float]]
+) -> Figure:
+    """Draw the plan with beams, columns, routes and points (Figure 8)."""
+    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    figure, (axes,) = new_figure(5.6, 1.2 + 5.0 * (y1 - y0) / (x1 - x0))
+    _draw_beams(axes, plan)
+    for i, (name, route) in enumerate(routes.items()):
+        colour = COLOURS[i % 6]
+        axes.plot(*route.points.T, color=colour, linewidth=2.0)
+        axes.annotate(
+            "",
+            route.points[-1],
+            xytext=route.points[-2],
+            arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 2.0},
+        )
+        speed = 3.6 * float(route.law.speed(0.0))
+        middle, direction = route.locate(np.array([0.72 * route.length]))
+        angle = np.degrees(np.arctan2(direction[0, 1], direction[0, 0]))
+        axes.annotate(
+            f"{name}, {speed:.3g} km/h",
+            middle[0],
+            rotation=angle,
+            rotation_mode="anchor",
+            xytext=(0, 0),
+            textcoords="offset points",
+            ha="center",
+            va="bottom",
+            color=colour,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
+        )
+    for name, place in points.items():
+        axes.plot(*place, marker="X", markersize=9, color="black", linestyle="none")
+        axes.annotate(name, place, xytext=(8, 6), textcoords="offset points", weight="bold")
+    _draw_edges(axes, plan)
+    axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
+    axes.set(xlim=(x0 - 3.0, x1 + 3.0), ylim=(y0 - 3.0, y1 + 3.0))
+    axes.grid(visible=False)
+    return figure
+
+
+def _draw_beams(axes: Axes, plan: FloorPlan) -> None:
+    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    if plan.beams_x:
+        axes.hlines(plan.y_lines, x0, x1, color="#9A9A9A", linewidth=2.2)
+    if plan.beams_y:
+        axes.vlines(plan.x_lines, y0, y1, color="#9A9A9A", linewidth=1.6)
+    axes.vlines(plan.secondary_lines, y0, y1, color="#BDBDBD", linewidth=0.8, linestyle="--")
+    if plan.column:
+        x, y = np.meshgrid(plan.x_lines, plan.y_lines)
+        axes.plot(x.ravel(), y.ravel(), marker="s", markersize=5, color="black", linestyle="none")
+
+
+def _draw_edges(axes: Axes, plan: FloorPlan) -> None:
+    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    sides = {
+        "x_min": ([x0, x0], [y0, y1]),
+        "x_max": ([x1, x1], [y0, y1]),
+        "y_min": ([x0, x1], [y0, y0]),
+        "y_max": ([x0, x1], [y1, y1]),
+    }
+    looks = {
+        "free": ("-", 1.0),
+        "symmetry": ("-.", 1.4),
+        "pinned": ("--", 1.4),
+        "clamped": ("-", 2.6),
+    }
+    shown: set[str] = set()
+    for edge, (x, y) in sides.items():
+        kind = plan.edges.get(edge, "free")
+        line, width = looks[kind]
+        label = None if kind in shown else f"{kind} edge"
+        axes.plot(x, y, color="black", linestyle=line, linewidth=width, label=label, zorder=1.5)
+        shown.add(kind)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=3)
+
+
+def section_figure(plan: FloorPlan) -> Figure:
+    """Draw the section along y with slab, beams and columns (Figure 9)."""
+    figure, (axes,) = new_figure(7.2, 2.9)
+    y0, y1 = plan.y_extent
+    half = 0.5 * plan.slab.thickness
+    axes.fill_between([y0, y1], -half, half, color="#7F7F7F")
+    if plan.beams_y:
+        axes.fill_between([y0, y1], -half - plan.beams_y.depth, -half, color="#D0D0D0")
+    for y in plan.y_lines:
+        if plan.beams_x:
+            w = 0.5 * plan.beams_x.width
+            axes.fill_between([y - w, y + w], -half - plan.beams_x.depth, -half, color="#5A5A5A")
+        if plan.column:
+            w = 0.5 * plan.column.width
+            axes.fill_between(
+                [y - w, y + w], -plan.storey_below, plan.storey_above, color="#B0B0B0", zorder=0.5
+            )
+    marks = np.unique(np.concatenate([[y0], plan.y_lines, [y1]]))
+    level = -plan.storey_below - 1.0
+    for low, high in pairwise(marks):
+        axes.annotate("", (low, level), xytext=(high, level), arrowprops={"arrowstyle": "<->"})
+        axes.text(0.5 * (low + high), level - 0.3, f"{high - low:g} m", ha="center", va="top")
+    axes.set(xlabel="y [m]", ylabel="z [m]", ylim=(level - 2.5, plan.storey_above + 1.0))
+    axes.set_title("columns are fixed at both far ends", fontsize=9)
+    axes.grid(visible=False)
+    return figure
+
+
+def _edges(elements: Array) -> Array:
+    """Return each edge of the elements once, as pairs of node numbers."""
+    around = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
+    return np.unique(np.sort(around, axis=1), axis=0)
+
+
+def mesh_figure(floor: Floor) -> Figure:
+    """Draw the finite-element mesh in perspective (Figure 10)."""
+    figure, (axes,) = new_figure(7.2, 5.4, subplot_kw={"projection": "3d"})
+    for group in floor.shells:
+        lines = floor.nodes[_edges(group.elements)]
+        axes.add_collection(
+            Line3DCollection(lines, colors="#8FB8D6", linewidths=0.25, rasterized=True)
+        )
+    for group in floor.beams:
+        lines = floor.nodes[group.elements] + group.offset
+        colour = COLOURS[1] if group.name == "column" else "#333333"
+        axes.add_collection(Line3DCollection(lines, colors=colour, linewidths=0.9, rasterized=True))
+    low, high = floor.nodes.min(axis=0), floor.nodes.max(axis=0)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2] + 1e-3))
+    axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    axes.set_box_aspect(np.maximum(high - low, 1.0), zoom=1.15)
+    axes.view_init(elev=24.0, azim=-122.0)
+    axes.text2D(
+        0.02,
+        0.97,
+        f"{len(floor.nodes)} nodes, {floor.n_dofs} degrees of freedom",
+        transform=axes.transAxes,
+    )
+    return figure
+
+
+def modes_figure(floor: Floor, modes: Modes, *, n_shown: int = 8) -> Figure:
+    """Draw the vertical motion of the slab in the first modes."""
+    n_shown = min(n_shown, modes.n_modes)
+    columns = min(4, n_shown)
+    figure, axes = new_figure(
+        7.2,
+        2.7 * int(np.ceil(n_shown / columns)),
+        rows=int(np.ceil(n_shown / columns)),
+        columns=columns,
+        sharex=True,
+        sharey=True,
+    )
+    elements = floor.shells[0].elements
+    mesh = Triangulation(
+        floor.nodes[:, 0],
+        floor.nodes[:, 1],
+        np.vstack([elements[:, [0, 1, 2]], elements[:, [0, 2, 3]]]),
+    )
+    rows = floor.dof_index[:, 2]
+    for i, panel in enumerate(axes):
+        if i >= n_shown:
+            panel.set_visible(False)
+            continue
+        w = np.where(rows >= 0, modes.shapes[np.maximum(rows, 0), i], 0.0)
+        w = w / np.abs(w).max()
+        panel.tripcolor(mesh, w, cmap="RdBu_r", vmin=-1, vmax=1, shading="gouraud", rasterized=True)
+        panel.set(aspect="equal", title=f"{i + 1}: {modes.frequencies[i]:.2f} Hz")
+        panel.grid(visible=False)
+    figure.supxlabel("x [m]", fontsize=9)
+    figure.supylabel("y [m]", fontsize=9)
+    return figure

@@ -1,0 +1,167 @@
+"""Draw responses: histories, spectra on criteria, ours beside the printed values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from trundle.criteria import Criterion
+from trundle.report.canvas import COLOURS, new_figure
+from trundle.report.tables import ComparisonRow
+from trundle.study.run import CellKey, StudyResult
+from trundle.units import GAL, MICROMETRE_PER_SECOND
+
+__all__ = [
+    "acceleration_criteria_figure",
+    "comparison_figure",
+    "history_figure",
+    "velocity_criteria_figure",
+]
+
+
+def history_figure(
+    result: StudyResult, case: str, road: str, methods: Sequence[str], point: str
+) -> Figure:
+    """Draw the first run's acceleration by each method (Figures 11 to 15)."""
+    figure, axes = new_figure(7.2, 1.6 * len(methods) + 0.4, rows=len(methods), sharex=True)
+    i = list(result.study.points).index(point)
+    for number, (panel, method) in enumerate(zip(axes, methods, strict=True)):
+        history = result.cells[CellKey(case, road, method)].history
+        values = history.acceleration[:, i] / GAL
+        panel.plot(history.time, values, color=COLOURS[number], linewidth=0.8)
+        peak = np.abs(values).max()
+        panel.set(ylabel="a [gal]", xlim=(0.0, history.time[-1]))
+        panel.set_title(f"{method}: peak {peak:.3g} gal", loc="left", fontsize=9)
+    axes[-1].set_xlabel("time [s]")
+    return figure
+
+
+def velocity_criteria_figure(result: StudyResult, road: str, method: str, point: str) -> Figure:
+    """Draw band levels of every case on the velocity criteria (Figure 17)."""
+    figure, (axes,) = new_figure(7.2, 4.6)
+    criteria = result.study.assessment.criteria if result.study.assessment else ()
+    for criterion in criteria:
+        if criterion.quantity == "band_rms_velocity":
+            _draw_curve(axes, criterion)
+    i = list(result.study.points).index(point)
+    for number, case in enumerate(result.study.cases):
+        spectra = result.cells[CellKey(case.name, road, method)].spectra
+        low, middle, high = (spectra.percentile(p)[i] for p in (5.0, 50.0, 95.0))
+        colour = COLOURS[number % len(COLOURS)]
+        scale = 1.0 / MICROMETRE_PER_SECOND
+        axes.fill_between(
+            spectra.mid_band, low * scale, high * scale, color=colour, alpha=0.18, linewidth=0
+        )
+        axes.plot(
+            spectra.mid_band,
+            middle * scale,
+            color=colour,
+            marker="o",
+            markersize=3,
+            label=case.name,
+        )
+    ticks = [1, 2, 4, 8, 16, 31.5, 63]
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlim=(0.9, 130.0),
+        xlabel="mid-band frequency [Hz]",
+        ylabel=f"RMS velocity in one-third octaves [um/s]\n({_rule(result)})",
+    )
+    axes.set_ylim(bottom=max(axes.get_ylim()[0], 0.01))
+    axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
+    axes.minorticks_off()
+    axes.set_title(
+        f"class {road}, {point}, method {method!r}: median and 5-95 % of the runs", fontsize=9
+    )
+    figure.legend(loc="outside lower center", ncols=len(result.study.cases))
+    return figure
+
+
+def _rule(result: StudyResult) -> str:
+    names = {"max_1s": "largest 1 s average", "slow": "slow", "event": "whole event"}
+    assessment = result.study.assessment
+    return names[assessment.averaging if assessment else "max_1s"]
+
+
+def _draw_curve(axes: Axes, criterion: Criterion) -> None:
+    limits = criterion.limits / MICROMETRE_PER_SECOND
+    axes.plot(criterion.frequencies, limits, color="black", linewidth=0.9)
+    axes.annotate(
+        criterion.title,
+        (criterion.frequencies[-1], limits[-1]),
+        xytext=(4, 0),
+        textcoords="offset points",
+        va="center",
+        fontsize=7.5,
+        annotation_clip=False,
+    )
+
+
+def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -> Figure:
+    """Draw the peak accelerations of every case on the limits in gal (Figure 16)."""
+    figure, (axes,) = new_figure(7.2, 3.8)
+    i = list(result.study.points).index(point)
+    labels: list[str] = []
+    for case in result.study.cases:
+        for number, road in enumerate(result.study.roads):
+            peaks = result.cells[CellKey(case.name, road, method)].peak_acceleration[:, i] / GAL
+            low, middle, high = np.percentile(peaks, [5.0, 50.0, 95.0])
+            x = len(labels)
+            colour = COLOURS[number % len(COLOURS)]
+            axes.plot([x, x], [low, high], color=colour, linewidth=5.0, alpha=0.35)
+            axes.plot([x], [middle], marker="o", color=colour)
+            labels.append(f"{case.name}\n{road}")
+    criteria = result.study.assessment.criteria if result.study.assessment else ()
+    for criterion in criteria:
+        if criterion.quantity == "peak_acceleration" and criterion.axis != "horizontal":
+            limit = float(criterion.limits[0]) / GAL
+            axes.axhline(limit, color="black", linewidth=0.9)
+            axes.annotate(
+                f"{criterion.title.split(' (')[0]}, {limit:g} gal",
+                (1.0, limit),
+                xycoords=("axes fraction", "data"),
+                xytext=(0, 2),
+                textcoords="offset points",
+                ha="right",
+                va="bottom",
+                fontsize=8,
+            )
+    axes.set(yscale="log", ylabel="peak acceleration, 0-peak [gal]")
+    axes.set_xticks(range(len(labels)), labels, fontsize=8)
+    axes.set_title(f"{point}, method {method!r}: median and 5-95 % of the runs", fontsize=9)
+    return figure
+
+
+def comparison_figure(rows: Sequence[ComparisonRow]) -> Figure:
+    """Draw our ranges with the printed values on them, for both columns of Table 2."""
+    figure, axes = new_figure(7.2, 0.30 * len(rows) + 1.2, columns=2, sharey=True)
+    for panel, what, unit in (
+        (axes[0], "peak", "peak acceleration [gal]"),
+        (axes[1], "rms", "record RMS velocity [um/s]"),
+    ):
+        for y, row in enumerate(rows):
+            low, middle, high = getattr(row, what)
+            colour = COLOURS[0] if row.method == "decoupled" else COLOURS[2]
+            panel.plot([low, high], [y, y], color=colour, linewidth=5.0, alpha=0.35)
+            panel.plot([middle], [y], marker="o", color=colour, markersize=4)
+            panel.plot(
+                [getattr(row, f"printed_{what}")],
+                [y],
+                marker="x",
+                color=COLOURS[1],
+                markersize=6,
+                markeredgewidth=1.6,
+            )
+        panel.set(xscale="log", xlabel=unit)
+    axes[0].set_yticks(
+        range(len(rows)), [f"{row.case} {row.road}, {row.method}" for row in rows], fontsize=8
+    )
+    axes[0].invert_yaxis()
+    axes[0].plot([], [], marker="o", color=COLOURS[7], label="ours: median, 5-95 %")
+    axes[0].plot([], [], marker="x", linestyle="none", color=COLOURS[1], label="printed")
+    figure.legend(loc="outside upper center", ncols=2)
+    return figure

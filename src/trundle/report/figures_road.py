@@ -1,0 +1,57 @@
+"""Draw road roughness: spectra of the classes, and one profile of some of them."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from trundle.report.canvas import COLOURS, new_figure
+from trundle.road import CLASS_NAMES, FITTED_RANGE, RoadClass, RoughnessBand, synthesise
+
+__all__ = ["profiles_figure", "roughness_figure"]
+
+
+def roughness_figure() -> Figure:
+    """Draw Gd(n) of the eight classes with their limits (the paper's Figure 2)."""
+    figure, (axes,) = new_figure(7.2, 4.2)
+    n = np.array([0.01, 10.0])
+    for i, name in enumerate(CLASS_NAMES):
+        mean = RoadClass(name).displacement_psd(n)
+        lower, upper = (RoadClass(name, level=x).displacement_psd(n) for x in ("lower", "upper"))
+        axes.fill_between(n, lower, upper, color=COLOURS[i % 2], alpha=0.16, linewidth=0)
+        axes.plot(n, mean, color=COLOURS[i % 2])
+        axes.annotate(name, (n[1], mean[1]), xytext=(5, 0), textcoords="offset points", va="center")
+    axes.axvspan(*FITTED_RANGE, ymax=0.02, color="#000000", alpha=0.6)
+    axes.annotate(
+        "fitted range of ISO 8608",
+        (0.18, 0.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(0, 8),
+        textcoords="offset points",
+        ha="center",
+    )
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlim=(0.01, 10.0),
+        xlabel="spatial frequency n [cycle/m]",
+        ylabel="displacement PSD $G_d(n)$ [m$^3$]",
+    )
+    return figure
+
+
+def profiles_figure(band: RoughnessBand, seed: int, *, length: float = 100.0) -> Figure:
+    """Draw one profile of classes A to D, upper limits, one phase set (Figure 3)."""
+    figure, (axes,) = new_figure(7.2, 3.2)
+    for i, name in enumerate("DCBA"):
+        profile = synthesise(
+            RoadClass(name, level="upper"),
+            length=length,
+            rng=np.random.default_rng(seed),
+            band=band,
+        )
+        s = np.linspace(0.0, length, 2001)
+        axes.plot(s, 100.0 * profile.at(s)[0], color=COLOURS[3 - i], label=f"class {name}")
+    axes.set(xlabel="distance [m]", ylabel="elevation [cm]", xlim=(0.0, length))
+    axes.legend(ncols=4, loc="upper center", bbox_to_anchor=(0.5, 1.14))
+    return figure

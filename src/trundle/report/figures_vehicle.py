@@ -1,0 +1,121 @@
+"""Draw vehicles: where they stand, how they vibrate, how hard they press."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from trundle.dynamics import Modal
+from trundle.report.canvas import COLOURS, new_figure
+from trundle.road import RoadClass, RoughnessBand
+from trundle.route import Ramp, Route
+from trundle.simulate import Crossing, contact_forces
+from trundle.vehicle import GRAVITY, Vehicle
+
+__all__ = ["axle_forces_figure", "vehicle_figure", "vehicle_modes_figure"]
+
+
+def vehicle_figure(vehicle: Vehicle) -> Figure:
+    """Draw contacts, springs and static loads of a vehicle (Figures 4 and 5)."""
+    figure, (axes,) = new_figure(7.2, 2.8)
+    length = max(vehicle.length, 1.0)
+    axes.add_patch(_box(-0.06 * length, 1.2, 1.12 * length, 1.0))
+    axes.text(
+        0.5 * length,
+        1.7,
+        f"{vehicle.name}\n{vehicle.total_mass / 1e3:.2f} t",
+        ha="center",
+        va="center",
+    )
+    for i, place in enumerate(vehicle.setback):
+        _spring(axes, float(place))
+        load = vehicle.static_forces[i] / GRAVITY / 1e3
+        text = (
+            f"{vehicle.contact_names[i]}\n{load:.2f} t\n"
+            f"k = {vehicle.contact_stiffness[i] / 1e6:.3g} MN/m\n"
+            f"c = {vehicle.contact_damping[i] / 1e3:.3g} kN s/m"
+        )
+        axes.text(place, -0.25, text, ha="center", va="top", fontsize=8)
+    axes.axhline(0.0, color="black", linewidth=1.0)
+    axes.annotate(
+        "direction of travel",
+        (-0.10 * length, 2.55),
+        xytext=(0.35 * length, 2.55),
+        arrowprops={"arrowstyle": "->"},
+        va="center",
+    )
+    axes.set(
+        xlim=(-0.18 * length, 1.18 * length),
+        ylim=(-1.9, 2.8),
+        xlabel="distance behind the front axle [m]",
+        yticks=[],
+    )
+    axes.grid(visible=False)
+    axes.spines["left"].set_visible(False)
+    return figure
+
+
+def _box(x: float, y: float, width: float, height: float) -> Rectangle:
+    return Rectangle((x, y), width, height, facecolor="#EFEFEF", edgecolor="black")
+
+
+def _spring(axes: Axes, place: float) -> None:
+    z = np.linspace(0.0, 1.2, 13)
+    side = 0.16 * np.where(np.arange(13) % 2 == 0, -1.0, 1.0)
+    side[[0, 1, -2, -1]] = 0.0
+    axes.plot(place + side, z, color=COLOURS[0])
+    axes.plot([place], [0.0], marker="o", color="black")
+
+
+def vehicle_modes_figure(vehicle: Vehicle) -> Figure:
+    """Draw the natural frequencies with the motion over each axle (Figure 6)."""
+    frequencies, shapes = vehicle.mode_shapes()
+    n_shown = min(len(frequencies), 6)
+    figure, axes = new_figure(7.2, 2.6, columns=n_shown, sharey=True)
+    for i, panel in enumerate(axes):
+        panel.axhline(0.0, color="black", linewidth=0.8)
+        panel.bar(range(1, vehicle.n_contacts + 1), shapes[:, i], color=COLOURS[i], width=0.5)
+        panel.set(
+            title=f"{frequencies[i]:.2f} Hz",
+            xlabel="axle",
+            xticks=range(1, vehicle.n_contacts + 1),
+            ylim=(-1.15, 1.15),
+        )
+    axes[0].set_ylabel("relative motion")
+    return figure
+
+
+def axle_forces_figure(
+    vehicle: Vehicle,
+    road: RoadClass,
+    band: RoughnessBand,
+    speeds: Sequence[float],
+    *,
+    seed: int,
+    duration: float = 25.0,
+) -> Figure:
+    """Draw the dynamic axle forces of one run at several speeds [m/s] (Figure 7)."""
+    figure, axes = new_figure(7.2, 1.9 * len(speeds), rows=len(speeds), sharex=True, sharey=True)
+    for panel, speed in zip(axes, speeds, strict=True):
+        route = Route.straight((0.0, 0.0), (1.0, 0.0), speed=speed, name="force")
+        crossing = Crossing(
+            vehicle=vehicle, route=route, road=road, band=band, entry=Ramp(length=1.0)
+        )
+        step = Modal(f_max=100.0, dt=min(0.005, 0.4 / (band.n_max * speed)))
+        time, forces = contact_forces(
+            crossing, integration=step, n_runs=1, seed=seed, duration=duration
+        )
+        for i in reversed(range(vehicle.n_contacts)):
+            dynamic = (forces[0, :, i] - vehicle.static_forces[i]) / GRAVITY / 1e3
+            panel.plot(
+                time, dynamic, color=COLOURS[i], linewidth=0.8, label=vehicle.contact_names[i]
+            )
+        panel.set(ylabel="force [t]", title=f"{3.6 * speed:.0f} km/h, {road}", xlim=(0.0, duration))
+    handles, labels = axes[0].get_legend_handles_labels()
+    axes[0].legend(handles[::-1], labels[::-1], ncols=3, loc="upper right")
+    axes[-1].set_xlabel("time [s]")
+    return figure

@@ -1,0 +1,271 @@
+"""Write the report: figures, and one self-contained HTML page that opens offline."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+
+from trundle.report import figures_floor, figures_response, figures_road, figures_vehicle
+from trundle.report.canvas import STYLE, Picture, save
+from trundle.report.tables import bound_rows, comparison_rows, summary_rows, verdict_matrix
+from trundle.road import CLASS_NAMES, class_limits
+from trundle.study.run import StudyResult
+from trundle.study.store import provenance
+from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
+
+__all__ = ["write_report"]
+
+Tell = Callable[[str, float], None]
+
+_FORCE_SPEEDS = (15.0 * KMH, 30.0 * KMH, 40.0 * KMH)
+
+
+def write_report(result: StudyResult, folder: Path, *, tell: Tell | None = None) -> Path:
+    """Write ``figures/*.png``, ``figures/*.svg`` and ``report.html``; return its path.
+
+    Parameters
+    ----------
+    result : StudyResult
+        A finished study.
+    folder : Path
+        Results folder, which must exist.
+    tell : callable, optional
+        Told which figure is drawn, and the share drawn.
+    """
+    figures = folder / "figures"
+    figures.mkdir()
+    planned = list(_figures(result))
+    pictures: list[dict[str, str]] = []
+    for number, (picture, draw) in enumerate(planned):
+        if tell is not None:
+            tell(f"figure: {picture.title}", number / len(planned))
+        with rc_context(STYLE):
+            save(draw(), figures, picture.name)
+        png = (figures / f"{picture.name}.png").read_bytes()
+        pictures.append(
+            {
+                "name": picture.name,
+                "title": picture.title,
+                "caption": picture.caption,
+                "data": base64.b64encode(png).decode("ascii"),
+            }
+        )
+    page = folder / "report.html"
+    page.write_text(_render(result, pictures), encoding="utf-8")
+    return page
+
+
+def _figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], Figure]]]:
+    yield from _input_figures(result)
+    yield from _response_figures(result)
+
+
+def _input_figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], Figure]]]:
+    study = result.study
+    drive = next(iter(study.drives.values()))
+    vehicle, road = drive.vehicle, next(iter(study.roads.values()))
+    yield (
+        Picture(
+            name="plan",
+            title="Plan with routes and points",
+            caption="Beams (grey), secondary beams (dashed), columns (squares), routes with their "
+            "direction and speed, and the points where the response is read. (Figure 8)",
+        ),
+        lambda: figures_floor.plan_figure(
+            study.plan, {n: d.route for n, d in study.drives.items()}, study.points
+        ),
+    )
+    yield (
+        Picture(
+            name="section",
+            title="Section",
+            caption="Section along y: slab, beams, columns above and below. (Figure 9)",
+        ),
+        lambda: figures_floor.section_figure(study.plan),
+    )
+    yield (
+        Picture(
+            name="mesh",
+            title="Finite-element model",
+            caption="Shells (blue), beams at their centroids (dark), columns (orange). (Figure 10)",
+        ),
+        lambda: figures_floor.mesh_figure(study.floor),
+    )
+    modes = result.modes
+    if modes is not None:
+        yield (
+            Picture(
+                name="modes",
+                title="First modes of the floor",
+                caption="Vertical motion of the slab, red up and blue down.",
+            ),
+            lambda: figures_floor.modes_figure(study.floor, modes),
+        )
+    yield (
+        Picture(
+            name="roughness",
+            title="Road roughness of ISO 8608",
+            caption="Displacement PSD of classes A to H: geometric mean (line) and limits (band). "
+            "(Figure 2)",
+        ),
+        figures_road.roughness_figure,
+    )
+    yield (
+        Picture(
+            name="profiles",
+            title="Profiles of classes A to D",
+            caption=f"One realisation at the classes' upper limits, {study.band}. (Figure 3)",
+        ),
+        lambda: figures_road.profiles_figure(study.band, study.seed),
+    )
+    yield (
+        Picture(
+            name="vehicle",
+            title=f"Vehicle: {vehicle.name}",
+            caption=f"Contacts with static loads, springs and dampers. Source: {vehicle.source}. "
+            "(Figures 4 and 5)",
+        ),
+        lambda: figures_vehicle.vehicle_figure(vehicle),
+    )
+    yield (
+        Picture(
+            name="vehicle_modes",
+            title="Natural frequencies of the vehicle",
+            caption="Motion over each axle on rigid ground, largest set to 1. (Figure 6)",
+        ),
+        lambda: figures_vehicle.vehicle_modes_figure(vehicle),
+    )
+    yield (
+        Picture(
+            name="axle_forces",
+            title="Dynamic axle forces",
+            caption="Contact forces on rigid ground without the static load, one realisation. "
+            "(Figure 7)",
+        ),
+        lambda: figures_vehicle.axle_forces_figure(
+            vehicle, road, study.band, _FORCE_SPEEDS, seed=study.seed
+        ),
+    )
+
+
+def _response_figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], Figure]]]:
+    study = result.study
+    methods = [method.name for method in study.methods]
+    point, road = next(iter(study.points)), list(study.roads)[-1]
+    for number, case in enumerate(study.cases):
+        together = len(case.routes) > 1
+        what = "several vehicles at once" if together else f"route {case.name}"
+        yield (
+            Picture(
+                name=f"history_{number + 1}",
+                title=f"Acceleration at {point}: {what}, class {road}",
+                caption="First realisation by each method, on the same road. "
+                f"(Figure {11 + min(number, 4)})",
+            ),
+            lambda case=case: figures_response.history_figure(
+                result, case.name, road, methods, point
+            ),
+        )
+    if study.assessment is not None:
+        assessed = study.assessment.method
+        yield (
+            Picture(
+                name="criteria_acceleration",
+                title="Peak acceleration against equipment limits",
+                caption="Zero-to-peak limits of precision equipment. (Figure 16)",
+            ),
+            lambda: figures_response.acceleration_criteria_figure(result, assessed, point),
+        )
+        for name in study.roads:
+            yield (
+                Picture(
+                    name=f"criteria_velocity_{name.replace(' ', '_')}",
+                    title=f"Velocity spectra against criteria, class {name}",
+                    caption="One-third-octave RMS velocity on the generic criteria. (Figure 17)",
+                ),
+                lambda name=name: figures_response.velocity_criteria_figure(
+                    result, name, assessed, point
+                ),
+            )
+    rows = comparison_rows(result)
+    if rows:
+        yield (
+            Picture(
+                name="comparison",
+                title="Printed values on our ranges",
+                caption="Median (dot) and 5-95 % (bar) of our runs; crosses are printed values.",
+            ),
+            lambda: figures_response.comparison_figure(rows),
+        )
+
+
+def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
+    environment = Environment(
+        loader=PackageLoader("trundle.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["sig"] = lambda value, digits=3: f"{value:.{digits}g}"
+    environment.filters["rank"] = _rank
+    study = result.study
+    columns, matrix = verdict_matrix(result)
+    modes = result.modes
+    return environment.get_template("report.html.j2").render(
+        study=study,
+        pictures=pictures,
+        comparison=comparison_rows(result),
+        bounds=bound_rows(result),
+        summary=summary_rows(result),
+        columns=columns,
+        matrix=matrix,
+        verdict=_headline(result),
+        warnings=result.warnings(),
+        provenance=provenance(result),
+        frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],
+        n_modes=0 if modes is None else modes.n_modes,
+        moving_mass=study.floor.moving_mass() / 1e3,
+        class_limits=_class_table(),
+        gal=GAL,
+        micrometre=MICROMETRE_PER_SECOND,
+    )
+
+
+def _rank(value: float) -> str:
+    """Name a percentile; below the lowest run it is 'below all', above the highest 'above all'."""
+    if value <= 0.0:
+        return "below all"
+    if value >= 100.0:
+        return "above all"
+    return f"{value:.0f} %"
+
+
+def _class_table() -> list[tuple[str, list[str]]]:
+    return [(name, [f"{1e6 * v:.0f}" for v in class_limits(name)]) for name in CLASS_NAMES]
+
+
+def _headline(result: StudyResult) -> list[dict[str, Any]]:
+    """State for each case and road the strictest velocity criterion that is met."""
+    lines: list[dict[str, Any]] = []
+    for key, verdicts in result.verdicts.items():
+        for point in result.study.points:
+            bands = [
+                v
+                for v in verdicts
+                if v.point == point and v.criterion.quantity == "band_rms_velocity"
+            ]
+            passed = [v for v in bands if v.status == "pass"]
+            best = min(passed, key=lambda v: float(v.criterion.limits.min()), default=None)
+            failed = [v for v in bands if v.status == "fail"]
+            first = max(failed, key=lambda v: float(v.criterion.limits.min()), default=None)
+            lines.append(
+                {"case": key.case, "road": key.road, "point": point, "best": best, "first": first}
+            )
+    return lines

@@ -1,0 +1,182 @@
+"""Arrange results in the tables of the screen and the report, in engineers' units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trundle.criteria import Verdict
+from trundle.response import percentile_rank, upper_bounds
+from trundle.study.run import CellKey, StudyResult
+from trundle.units import GAL, MICROMETRE_PER_SECOND
+
+__all__ = [
+    "BoundRow",
+    "ComparisonRow",
+    "SummaryRow",
+    "bound_rows",
+    "comparison_rows",
+    "summary_rows",
+    "verdict_matrix",
+]
+
+Range = tuple[float, float, float]
+"""5 %, 50 % and 95 % of the runs."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SummaryRow:
+    """Hold one cell's ranges: peak acceleration [gal], record RMS velocity [um/s]."""
+
+    case: str
+    road: str
+    method: str
+    point: str
+    peak: Range
+    rms: Range
+
+
+@dataclass(frozen=True, kw_only=True)
+class ComparisonRow:
+    """Hold a printed cell beside ours, with the percentile at which it falls.
+
+    Attributes
+    ----------
+    case, road, method : str
+        The cell.
+    peak, rms : tuple of float
+        Our 5, 50 and 95 % [gal], [um/s].
+    printed_peak, printed_rms : float
+        Printed values [gal], [um/s].
+    peak_rank, rms_rank : float
+        Share of our runs below the printed value, 0 to 100.
+    """
+
+    case: str
+    road: str
+    method: str
+    peak: Range
+    rms: Range
+    printed_peak: float
+    printed_rms: float
+    peak_rank: float
+    rms_rank: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoundRow:
+    """Hold a printed upper bound beside ours, and the rule behind ours."""
+
+    bound: str
+    rule: str
+    road: str
+    method: str
+    peak: float
+    rms: float
+    printed_peak: float
+    printed_rms: float
+
+
+def _range(values: np.ndarray, unit: float) -> Range:
+    low, middle, high = np.percentile(values, [5.0, 50.0, 95.0]) / unit
+    return float(low), float(middle), float(high)
+
+
+def summary_rows(result: StudyResult) -> list[SummaryRow]:
+    """Return one row a cell and point."""
+    return [
+        SummaryRow(
+            case=key.case,
+            road=key.road,
+            method=key.method,
+            point=point,
+            peak=_range(cell.peak_acceleration[:, i], GAL),
+            rms=_range(cell.rms_velocity[:, i], MICROMETRE_PER_SECOND),
+        )
+        for key, cell in result.cells.items()
+        for i, point in enumerate(result.study.points)
+    ]
+
+
+def comparison_rows(result: StudyResult) -> list[ComparisonRow]:
+    """Return the printed cells beside ours, at the study's first point."""
+    rows = []
+    for printed in result.study.printed:
+        cell = result.cells[CellKey(printed.case, printed.road, printed.method)]
+        peak, rms = cell.peak_acceleration[:, 0], cell.rms_velocity[:, 0]
+        rows.append(
+            ComparisonRow(
+                case=printed.case,
+                road=printed.road,
+                method=printed.method,
+                peak=_range(peak, GAL),
+                rms=_range(rms, MICROMETRE_PER_SECOND),
+                printed_peak=printed.peak_acceleration / GAL,
+                printed_rms=printed.rms_velocity / MICROMETRE_PER_SECOND,
+                peak_rank=percentile_rank(printed.peak_acceleration, peak),
+                rms_rank=percentile_rank(printed.rms_velocity, rms),
+            )
+        )
+    return rows
+
+
+def bound_rows(result: StudyResult) -> list[BoundRow]:
+    """Return the printed upper bounds beside ours, from the medians of single routes.
+
+    An absolute maximum is the sum of the single peaks for accelerations; for velocities the
+    printed values are nearest to the root sum of squares, which is what is set beside them.
+    """
+    study = result.study
+    singles = [case.name for case in study.cases if len(case.routes) == 1]
+    many = [case.name for case in study.cases if len(case.routes) > 1]
+    rows = []
+    for printed in study.printed_bounds:
+
+        def median(case: str, what: str, printed=printed) -> float:  # noqa: ANN001
+            cell = result.cells[CellKey(case, printed.road, printed.method)]
+            return float(np.median(getattr(cell, what)[:, 0]))
+
+        peaks = upper_bounds([median(case, "peak_acceleration") for case in singles])
+        rms = upper_bounds([median(case, "rms_velocity") for case in singles])
+        if printed.bound == "single":
+            ours = (peaks.largest, rms.largest, "largest single route")
+        elif printed.bound == "absolute maximum":
+            ours = (peaks.absolute_sum, rms.root_sum_square, "a: sum; v: root sum of squares")
+        elif many:
+            ours = (
+                median(many[0], "peak_acceleration"),
+                median(many[0], "rms_velocity"),
+                f"simulated: {many[0]}",
+            )
+        else:
+            continue
+        rows.append(
+            BoundRow(
+                bound=printed.bound,
+                rule=ours[2],
+                road=printed.road,
+                method=printed.method,
+                peak=ours[0] / GAL,
+                rms=ours[1] / MICROMETRE_PER_SECOND,
+                printed_peak=printed.peak_acceleration / GAL,
+                printed_rms=printed.rms_velocity / MICROMETRE_PER_SECOND,
+            )
+        )
+    return rows
+
+
+def verdict_matrix(result: StudyResult) -> tuple[list[str], list[tuple[str, list[Verdict]]]]:
+    """Return column titles (case, road, point) and one row of verdicts a criterion."""
+    if result.study.assessment is None:
+        return [], []
+    many_points = len(result.study.points) > 1
+    columns: list[str] = []
+    rows: dict[str, list[Verdict]] = {}
+    for key, verdicts in result.verdicts.items():
+        for point in result.study.points:
+            columns.append(f"{key.case}, {key.road}" + (f", {point}" if many_points else ""))
+            for verdict in verdicts:
+                if verdict.point == point:
+                    rows.setdefault(verdict.criterion.title, []).append(verdict)
+    return columns, list(rows.items())

@@ -1,0 +1,86 @@
+"""Turn a signal into single numbers: RMS by a stated averaging rule, and band levels."""
+
+from __future__ import annotations
+
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+from jaxtyping import Float
+from scipy import signal
+
+from trundle._checks import one_of, positive
+from trundle._typing import Array
+from trundle.signals.bands import band_filter
+
+__all__ = ["Averaging", "averaged_rms", "band_levels", "running_rms"]
+
+Averaging: TypeAlias = Literal["max_1s", "slow", "event"]
+"""How a band's RMS is taken over time: the largest 1 s linear average, the largest
+exponential average with a time constant of 1 s, or one average over the whole event."""
+
+_WINDOW = 1.0  # s
+
+
+def running_rms(
+    samples: Float[Array, "... steps"], sampling_frequency: float, *, window: float = _WINDOW
+) -> Float[Array, "... steps"]:
+    """Return the linear RMS over the window that ends at each sample.
+
+    Before the first sample the signal is taken as zero. A window longer than the record
+    averages over the window, not the record.
+    """
+    width = max(1, round(positive("window", window) * sampling_frequency))
+    energy = np.cumsum(samples**2, axis=-1)
+    energy[..., width:] = energy[..., width:] - energy[..., :-width]
+    return np.sqrt(np.maximum(energy, 0.0) / width)
+
+
+def averaged_rms(
+    samples: Float[Array, "... steps"], sampling_frequency: float, averaging: Averaging
+) -> Float[Array, ...]:
+    """Return one RMS value of each signal by an averaging rule.
+
+    Parameters
+    ----------
+    samples : ndarray of float, shape (..., n_steps)
+        Signals in time.
+    sampling_frequency : float
+        Samples per second [Hz].
+    averaging : {"max_1s", "slow", "event"}
+        Rule, see `Averaging`.
+    """
+    one_of("averaging", averaging, get_args(Averaging))
+    if averaging == "event":
+        return np.sqrt(np.mean(samples**2, axis=-1))
+    if averaging == "max_1s":
+        return running_rms(samples, sampling_frequency).max(axis=-1)
+    decay = np.exp(-1.0 / (_WINDOW * sampling_frequency))
+    slow = signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1)
+    return np.sqrt(slow.max(axis=-1))
+
+
+def band_levels(
+    samples: Float[Array, "... steps"],
+    sampling_frequency: float,
+    mid_band: Float[Array, " bands"],
+    *,
+    averaging: Averaging = "max_1s",
+) -> Float[Array, "bands ..."]:
+    """Return the RMS of each signal in each one-third-octave band.
+
+    The signal must start and end near rest; the filters ring on into a second of silence
+    that is added at the end, except for ``event``, which averages over the record alone.
+    """
+    if averaging != "event":
+        silence = [(0, 0)] * (samples.ndim - 1) + [(0, round(_WINDOW * sampling_frequency))]
+        samples = np.pad(samples, silence)
+    return np.stack(
+        [
+            averaged_rms(
+                signal.sosfilt(band_filter(f, sampling_frequency), samples, axis=-1),
+                sampling_frequency,
+                averaging,
+            )
+            for f in mid_band
+        ]
+    )

@@ -1,0 +1,111 @@
+"""Give back the static share of the modes that a truncated basis leaves out.
+
+A few hundred modes show how a floor vibrates, but not how it sinks under a wheel, nor that
+it hardly moves far from one: the modes left out sum up to a static flexibility
+
+    R = K^-1 - Phi Omega^-2 Phi^T,
+
+which follows the contact force without delay as long as that varies slowly against the
+first mode left out.
+
+References
+----------
+R. R. Craig, Structural Dynamics (1981), section 15.2 (mode-acceleration method).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import Factor, Modes, factorise
+from trundle.route import ContactRows
+from trundle.structure import Floor
+
+__all__ = ["StaticFlexibility", "point_residual", "residual_block", "residual_motion"]
+
+_COLUMNS = 64  # right-hand sides solved at once
+
+
+class StaticFlexibility:
+    """Answer for a floor's static flexibility, solving for each dof once."""
+
+    def __init__(self, floor: Floor) -> None:
+        self._floor = floor
+        self._factor: Factor | None = None
+        self._dofs = np.zeros(0, dtype=np.intp)
+        self._block = np.zeros((0, 0))
+
+    def cover(self, dofs: Int[Array, " dofs"]) -> None:
+        """Solve for those of these dofs that were not asked for before."""
+        new = np.setdiff1d(dofs, self._dofs)
+        if new.size == 0:
+            return
+        union = np.union1d(new, self._dofs)
+        block = np.empty((len(union), len(union)))
+        old_at, new_at = np.searchsorted(union, self._dofs), np.searchsorted(union, new)
+        block[np.ix_(old_at, old_at)] = self._block
+        for start in range(0, len(new), _COLUMNS):
+            columns = new[start : start + _COLUMNS]
+            unit = np.zeros((self._floor.n_dofs, len(columns)))
+            unit[columns, np.arange(len(columns))] = 1.0
+            solved = self.solve(unit)[union]
+            at = new_at[start : start + _COLUMNS]
+            block[:, at] = solved
+            block[at] = solved.T
+        self._dofs, self._block = union, block
+
+    def block(self, dofs: Int[Array, " dofs"]) -> Float[Array, "dofs dofs"]:
+        """Return the part of K^-1 between some dofs [m/N]."""
+        self.cover(dofs)
+        at = np.searchsorted(self._dofs, dofs)
+        return self._block[np.ix_(at, at)]
+
+    def solve(self, load: Float[Array, "all columns"]) -> Float[Array, "all columns"]:
+        """Return the static deflections under loads."""
+        if self._factor is None:
+            self._factor = factorise(self._floor.stiffness)
+        return self._factor.solve(load)
+
+
+def residual_block(
+    flexibility: StaticFlexibility, modes: Modes, dofs: Int[Array, " dofs"]
+) -> Float[Array, "dofs dofs"]:
+    """Return R between some dofs [m/N]."""
+    shapes = modes.shapes[dofs] / modes.omega
+    return flexibility.block(dofs) - shapes @ shapes.T
+
+
+def point_residual(
+    flexibility: StaticFlexibility, modes: Modes, points: SparseMatrix
+) -> Float[Array, "points dofs"]:
+    """Return the rows of R that give the response at points [m/N]."""
+    exact = flexibility.solve(np.ascontiguousarray(points.T.toarray())).T
+    return exact - ((points @ modes.shapes) / modes.omega**2) @ modes.shapes.T
+
+
+def residual_motion(
+    rows: ContactRows,
+    forces: Float[Array, "steps contacts runs"],
+    residual: Float[Array, "points dofs"],
+    dt: float,
+) -> tuple[
+    Float[Array, "steps points runs"],
+    Float[Array, "steps points runs"],
+    Float[Array, "steps points runs"],
+]:
+    """Return displacement, velocity and acceleration that the residual adds at points.
+
+    Velocity and acceleration are central differences of the displacement.
+    """
+    n_steps, n_contacts, _ = forces.shape
+    influence = rows.matrix(rows.load_share[:, None] * rows.value) @ residual.T
+    influence = influence.reshape(n_steps, n_contacts, -1)
+    displacement = -np.einsum("scp,scr->spr", influence, forces, optimize=True)
+    # The floor was at rest before the record, or in the static state of its first step.
+    before = displacement[:1]
+    padded = np.concatenate([before, displacement, displacement[-1:]])
+    velocity = (padded[2:] - padded[:-2]) / (2.0 * dt)
+    acceleration = (padded[2:] - 2.0 * displacement + padded[:-2]) / dt**2
+    return displacement, velocity, acceleration

@@ -1,0 +1,225 @@
+"""Check what no section can know alone: names that refer, places on the floor, time steps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from trundle.criteria import find_criterion
+from trundle.dynamics import Modal
+from trundle.errors import InputError, Problem
+from trundle.road import RoughnessBand
+from trundle.structure import FloorPlan
+from trundle.study.model import Drive, MethodPlan, road_label
+from trundle.study.read import StudyFile
+
+__all__ = ["relation_problems"]
+
+_MAX_STEPS = 2_000_000
+_MAX_HISTORY = 4e9  # bytes of histories held at once for one cell
+_EDGE = 1e-6  # m
+_TOP = 80.0  # Hz: bands are assessed up to here
+
+
+def relation_problems(
+    file: StudyFile,
+    plan: FloorPlan | None,
+    drives: Mapping[str, Drive],
+    methods: Mapping[str, MethodPlan],
+    *,
+    band: RoughnessBand | None,
+    follows_dt: bool,
+) -> list[Problem]:
+    """Return the problems of sections that are sound by themselves."""
+    found = list(_references(file))
+    if plan is not None:
+        found += _places(file, plan)
+    found += _time_steps(file, methods)
+    if band is not None and not follows_dt:
+        found += _roughness(file, drives, methods, band)
+    found += _sizes(file, drives, methods)
+    found += _entries(drives, methods)
+    return found
+
+
+def _references(file: StudyFile) -> Iterator[Problem]:
+    declared = file.declared
+    names = {
+        "route": declared["route"],
+        "method": declared["method"],
+        "case": declared["route"] | declared["traffic"],
+        "road": {road_label(s) for s in file.items("road")},
+    }
+    for i, section in file.lists.get("traffic", []):
+        for j, route in enumerate(section.routes):
+            yield from _refer(f"traffic[{i + 1}].routes[{j + 1}]", route, names, "route")
+        if len(set(section.routes)) < len(section.routes):
+            yield Problem(
+                place=f"traffic[{i + 1}].routes",
+                value=", ".join(section.routes),
+                rule="a route can carry one vehicle at a time",
+                remedy="name each route once",
+            )
+    criteria = file.tables.get("criteria")
+    if criteria is not None:
+        yield from _refer("criteria.method", criteria.method, names, "method")
+    printed = {"printed": ("case", "road", "method"), "printed_bound": ("road", "method")}
+    for kind, keys in printed.items():
+        for i, section in file.lists.get(kind, []):
+            for key in keys:
+                if key == "road" and file.has_bad("road"):
+                    continue  # a road with mistakes has no label to compare with
+                yield from _refer(f"{kind}[{i + 1}].{key}", getattr(section, key), names, key)
+
+
+def _refer(place: str, value: str, names: Mapping[str, set[str]], kind: str) -> Iterator[Problem]:
+    if value not in names[kind]:
+        yield Problem(
+            place=place,
+            value=repr(value),
+            rule=f"must be the name of a {kind} in this study",
+            remedy=f"there are: {', '.join(sorted(names[kind])) or 'none'}",
+        )
+
+
+def _places(file: StudyFile, plan: FloorPlan) -> Iterator[Problem]:
+    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    covered = f"the floor covers x {x0:g} to {x1:g} m and y {y0:g} to {y1:g} m"
+
+    def off(place: tuple[float, float]) -> bool:
+        x, y = place
+        return not (x0 - _EDGE <= x <= x1 + _EDGE and y0 - _EDGE <= y <= y1 + _EDGE)
+
+    for i, section in file.lists.get("route", []):
+        for j, place in enumerate(section.path):
+            if off(place):
+                yield Problem(
+                    place=f"route[{i + 1}].path[{j + 1}]",
+                    value=f"({place[0]:g}, {place[1]:g}) m",
+                    rule=f"a route must stay on the floor; {covered}",
+                    remedy="start and end it at the floor's edges; 'trundle check' draws the plan",
+                )
+    for i, section in file.lists.get("point", []):
+        if off(section.at):
+            yield Problem(
+                place=f"point[{i + 1}].at",
+                value=f"({section.at[0]:g}, {section.at[1]:g}) m",
+                rule=f"a point must lie on the floor; {covered}",
+                remedy="move it onto the floor",
+            )
+
+
+def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
+    for i, section in file.lists.get("method", []):
+        plan = methods.get(section.name)
+        if plan is None:
+            continue
+        integration = plan.interaction.integration
+        nyquist = 0.5 / integration.dt
+        if isinstance(integration, Modal) and integration.f_max > nyquist * (1 + 1e-9):
+            yield Problem(
+                place=f"method[{i + 1}].dt",
+                value=f"{1e3 * integration.dt:g} ms",
+                rule=f"modes to {integration.f_max:g} Hz need a time step of at most "
+                f"{500.0 / integration.f_max:g} ms (two samples a period)",
+                remedy="shorten dt, or lower f_max",
+            )
+        if file.general is not None and integration.dt > file.general.duration / 10.0:
+            yield Problem(
+                place=f"method[{i + 1}].dt",
+                value=f"{1e3 * integration.dt:g} ms",
+                rule=f"a record of {file.general.duration:g} s needs at least 10 steps",
+                remedy="shorten dt; 5 ms shows bands up to 80 Hz",
+            )
+    yield from _assessed_step(file, methods)
+
+
+def _assessed_step(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
+    criteria = file.tables.get("criteria")
+    if criteria is None or criteria.method not in methods:
+        return
+    top = 0.0
+    for name in criteria.curves:
+        try:
+            curve = find_criterion(name)
+        except InputError:
+            continue  # reported where the curves are read
+        top = max(top, min(float(curve.frequencies[-1]), _TOP))
+    dt = methods[criteria.method].interaction.integration.dt
+    if top and dt > 1.0 / (2.5 * top) * (1 + 1e-9):
+        yield Problem(
+            place="criteria.method",
+            value=f"{criteria.method!r} with dt = {1e3 * dt:g} ms",
+            rule=f"curves that reach {top:g} Hz need a time step of at most {400.0 / top:g} ms",
+            remedy="shorten dt, or assess by another method of this study",
+        )
+
+
+def _roughness(
+    file: StudyFile,
+    drives: Mapping[str, Drive],
+    methods: Mapping[str, MethodPlan],
+    band: RoughnessBand,
+) -> Iterator[Problem]:
+    del file
+    for name, drive in drives.items():
+        speed = float(drive.route.law.speed(0.0))
+        for method in methods.values():
+            dt = method.interaction.integration.dt
+            if band.n_max * speed * dt > 0.5 * (1 + 1e-9):
+                yield Problem(
+                    place="roughness.n_max",
+                    value=f"{band.n_max:g} 1/m",
+                    rule=f"method {method.name!r} on route {name!r} can follow waves to "
+                    f"{0.5 / (speed * dt):.3g} 1/m (dt = {1e3 * dt:g} ms)",
+                    remedy="shorten dt, lower n_max, or set n_max_follows_dt = true",
+                )
+
+
+def _sizes(
+    file: StudyFile, drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]
+) -> Iterator[Problem]:
+    if file.general is None:
+        return
+    contacts = sum(drive.vehicle.n_contacts for drive in drives.values())
+    readings = 3 * max(1, len(file.items("point"))) + 3 * max(1, contacts)
+    for method in methods.values():
+        steps = file.general.duration / method.interaction.integration.dt
+        if steps > _MAX_STEPS:
+            yield Problem(
+                place="duration",
+                value=f"{file.general.duration:g} s",
+                rule=f"method {method.name!r} would take {steps:.3g} steps; "
+                f"the limit is {_MAX_STEPS}",
+                remedy="shorten the duration, or lengthen dt",
+            )
+        elif steps * readings * file.general.runs * 8 > _MAX_HISTORY:
+            most = int(_MAX_HISTORY / (8 * steps * readings))
+            yield Problem(
+                place="runs",
+                value=str(file.general.runs),
+                rule=f"the histories of method {method.name!r} would not fit in memory",
+                remedy=f"use at most {most} runs, fewer points, or a shorter record",
+            )
+
+
+def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
+    for name, drive in drives.items():
+        for method in methods.values():
+            length = getattr(method.entry, "length", None)
+            if length is not None and length > 0.5 * drive.route.length:
+                yield Problem(
+                    place=f"method {method.name!r}.entry_length",
+                    value=f"{length:g} m",
+                    rule=f"entry and exit must both fit on route {name!r} of "
+                    f"{drive.route.length:g} m",
+                    remedy=f"use at most {0.5 * drive.route.length:g} m",
+                )
+            if method.entry.lead(drive.vehicle.length) > drive.route.length:
+                yield Problem(
+                    place=f"method {method.name!r}.entry",
+                    value="static",
+                    rule=f"the whole vehicle must stand on route {name!r}, "
+                    f"{drive.route.length:g} m long, at the start; it needs "
+                    f"{drive.vehicle.length:g} m",
+                    remedy='lengthen the route, or use entry = "drive_in"',
+                )

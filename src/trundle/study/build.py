@@ -1,0 +1,381 @@
+"""Turn checked sections into a study in SI, and check how they fit together."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+
+from trundle.criteria import Criterion, find_criterion
+from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
+from trundle.errors import InputError, Problem, StudyError
+from trundle.road import RoadClass, RoughnessBand
+from trundle.route import ConstantSpeed, Hat, Hermite, Route
+from trundle.simulate import Coupled, Decoupled
+from trundle.structure import (
+    FloorPlan,
+    Material,
+    Rectangle,
+    ShellSection,
+    build_floor,
+    reference_plan,
+)
+from trundle.study import schema
+from trundle.study._relations import relation_problems
+from trundle.study.model import (
+    Assessment,
+    Case,
+    Drive,
+    MethodPlan,
+    Note,
+    Printed,
+    PrintedBound,
+    Study,
+    entry_of,
+    road_label,
+)
+from trundle.study.read import StudyFile, read_study
+from trundle.vehicle import VEHICLES, Axle, Body, Hinge, Vehicle, build_vehicle
+
+__all__ = ["load_study"]
+
+T = TypeVar("T")
+
+_MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
+_DEFAULT_DRIVE_IN = 3.0  # m
+
+
+def load_study(path: Path | str) -> Study:
+    """Read, check and build a study.
+
+    Parameters
+    ----------
+    path : path-like
+        A TOML study file.
+
+    Returns
+    -------
+    Study
+        Everything in SI, the floor meshed.
+
+    Raises
+    ------
+    StudyError
+        With every mistake found: of single values, and of how they fit together.
+    """
+    file, problems = read_study(Path(path))
+    builder = _Builder(file, problems)
+    study = builder.build()
+    if problems or study is None:
+        raise StudyError(file.source, problems)
+    return study
+
+
+class _Builder:
+    """Collect problems while building, so that one mistake does not hide the next."""
+
+    def __init__(self, file: StudyFile, problems: list[Problem]) -> None:
+        self.file, self.problems = file, problems
+
+    def build(self) -> Study | None:
+        file = self.file
+        plan, mesh_size = self._plan()
+        vehicles = self._vehicles()
+        drives = self._drives(vehicles)
+        methods = self._methods(mesh_size)
+        band, follows = self._band()
+        assessment = self._assessment()
+        self._unique_names()
+        self.problems += relation_problems(
+            file, plan, drives, methods, band=band, follows_dt=follows
+        )
+        if self.problems or plan is None or file.general is None or band is None:
+            return None
+        floor = self._try("floor", lambda: build_floor(plan, mesh_size=mesh_size))
+        if floor is None:
+            return None
+        general = file.general
+        singles = tuple(Case(name=name, routes=(name,)) for name in drives)
+        traffic = tuple(Case(name=t.name, routes=t.routes) for t in file.items("traffic"))
+        return Study(
+            title=general.title,
+            source=file.source,
+            text=file.text,
+            content_hash=file.content_hash,
+            seed=general.seed,
+            runs=general.runs,
+            duration=general.duration,
+            floor=floor,
+            plan=plan,
+            drives=drives,
+            cases=singles + traffic,
+            roads={road_label(r): _road(r) for r in file.items("road")},
+            band=band,
+            band_follows_dt=follows,
+            points={p.name: p.at for p in file.items("point")},
+            methods=tuple(methods.values()),
+            assessment=assessment,
+            printed=tuple(Printed(**dict(p)) for p in file.items("printed")),
+            printed_bounds=tuple(PrintedBound(**dict(p)) for p in file.items("printed_bound")),
+            notes=tuple(Note(**dict(n)) for n in file.items("note")),
+        )
+
+    def _try(self, place: str, make: Callable[[], T], remedy: str = "") -> T | None:
+        try:
+            return make()
+        except InputError as error:
+            rule, _, value = str(error).partition("; got ")
+            self.problems.append(
+                Problem(
+                    place=place,
+                    value=value or "this section",
+                    rule=rule,
+                    remedy=remedy or "correct the value",
+                )
+            )
+            return None
+
+    def _plan(self) -> tuple[FloorPlan | None, float]:
+        section = self.file.tables.get("floor")
+        if section is None:
+            return None, 1.0
+        plan = (
+            reference_plan()
+            if isinstance(section, schema.ReferenceFloorSection)
+            else self._try("floor", lambda: _floor_plan(section))
+        )
+        if plan is not None:
+            self._mesh_problems(plan, section.mesh_size)
+        return plan, float(section.mesh_size)
+
+    def _mesh_problems(self, plan: FloorPlan, size: float) -> None:
+        sides = [high - low for low, high in (plan.x_extent, plan.y_extent)]
+        nodes = np.prod([side / size + 1 for side in sides])
+        if nodes > _MAX_NODES:
+            smallest = float(np.sqrt(np.prod(sides) / _MAX_NODES))
+            self.problems.append(
+                Problem(
+                    place="floor.mesh_size",
+                    value=f"{size:g} m",
+                    rule=f"the mesh may have {_MAX_NODES} nodes; this one would have {nodes:.3g}",
+                    remedy=f"use {np.ceil(100 * smallest) / 100:g} m or more",
+                )
+            )
+        elif size > 0.25 * min(sides):
+            self.problems.append(
+                Problem(
+                    place="floor.mesh_size",
+                    value=f"{size:g} m",
+                    rule="an element may be at most a quarter of the floor's shorter side",
+                    remedy=f"use {0.25 * min(sides):g} m or less; 1 m suits most floors",
+                )
+            )
+
+    def _vehicles(self) -> dict[str, Vehicle]:
+        made = {
+            name: self._try(f"vehicle.{name}", lambda n=name, s=section: _vehicle(n, s))
+            for name, section in self.file.vehicles.items()
+        }
+        return {name: vehicle for name, vehicle in made.items() if vehicle is not None}
+
+    def _drives(self, vehicles: dict[str, Vehicle]) -> dict[str, Drive]:
+        drives: dict[str, Drive] = {}
+        for i, section in self.file.lists.get("route", []):
+            place = f"route[{i + 1}]"
+            if section.vehicle not in vehicles:
+                known = self.file.declared["vehicle"]
+                if section.vehicle not in known:
+                    self._unknown(f"{place}.vehicle", section.vehicle, sorted(known), "vehicle")
+                continue
+            path = np.array(section.path)
+            route = self._try(
+                f"{place}.path",
+                lambda s=section, p=path: Route(points=p, law=ConstantSpeed(s.speed), name=s.name),
+            )
+            if route is not None:
+                drives[section.name] = Drive(
+                    route=route, vehicle=vehicles[section.vehicle], run_in=section.run_in
+                )
+        return drives
+
+    def _methods(self, mesh_size: float) -> dict[str, MethodPlan]:
+        methods: dict[str, MethodPlan] = {}
+        for i, section in self.file.lists.get("method", []):
+            place = f"method[{i + 1}]"
+            damping = self._damping(section, place)
+            integration = self._integration(section, place)
+            if damping is None or integration is None:
+                continue
+            kind = Coupled if section.interaction == "coupled" else Decoupled
+            contact = Hat() if section.contact == "hat" else Hermite()
+            made = self._try(
+                f"{place}.damping",
+                lambda k=kind, i=integration, d=damping, c=contact: k(
+                    integration=i, damping=d, contact=c
+                ),
+                'give rayleigh_alpha and rayleigh_beta, or integration = "modal"',
+            )
+            default = _DEFAULT_DRIVE_IN if section.entry == "drive_in" else mesh_size
+            if made is not None:
+                entry = entry_of(section.entry, section.entry_length or default)
+                methods[section.name] = MethodPlan(name=section.name, interaction=made, entry=entry)
+        return methods
+
+    def _damping(self, section: Any, place: str) -> Damping | None:
+        d = section.damping
+        rayleigh = (d.rayleigh_alpha is not None, d.rayleigh_beta is not None)
+        if d.ratio is not None and not any(rayleigh):
+            return ModalRatio(ratio=d.ratio)
+        if d.ratio is None and all(rayleigh):
+            return Rayleigh(alpha=d.rayleigh_alpha, beta=d.rayleigh_beta)
+        given = [
+            n for n in ("ratio", "rayleigh_alpha", "rayleigh_beta") if getattr(d, n) is not None
+        ]
+        self.problems.append(
+            Problem(
+                place=f"{place}.damping",
+                value=", ".join(given) or "nothing",
+                rule="damping is either a ratio or both Rayleigh coefficients",
+                remedy='write { ratio = "3 %" } or { rayleigh_alpha = "0.8587 1/s", '
+                'rayleigh_beta = "0.001 s" }',
+            )
+        )
+        return None
+
+    def _integration(self, section: Any, place: str) -> Modal | Newmark | None:
+        if section.integration == "newmark":
+            if section.f_max is not None:
+                self.problems.append(
+                    Problem(
+                        place=f"{place}.f_max",
+                        value=f"{section.f_max:g} Hz",
+                        rule="direct integration has no modes to cut off",
+                        remedy='remove f_max, or set integration = "modal"',
+                    )
+                )
+                return None
+            return Newmark(dt=section.dt)
+        if section.f_max is None:
+            self.problems.append(
+                Problem(
+                    place=f"{place}.f_max",
+                    value="nothing",
+                    rule="modal superposition needs the frequency up to which modes are kept",
+                    remedy='add f_max = "40 Hz"; twice the top frequency of interest is good',
+                )
+            )
+            return None
+        return Modal(f_max=section.f_max, dt=section.dt)
+
+    def _band(self) -> tuple[RoughnessBand | None, bool]:
+        section = self.file.tables.get("roughness")
+        if section is None:
+            return RoughnessBand(), True
+        band = self._try(
+            "roughness.n_max",
+            lambda: RoughnessBand(
+                n_min=section.n_min,
+                n_max=section.n_max,
+                contact_patch=section.contact_patch,
+                gaussian_amplitudes=section.gaussian_amplitudes,
+            ),
+        )
+        return band, section.n_max_follows_dt
+
+    def _assessment(self) -> Assessment | None:
+        section = self.file.tables.get("criteria")
+        if section is None:
+            return None
+        curves = [
+            self._try(
+                f"criteria.curves[{i + 1}]",
+                lambda n=name: find_criterion(n),
+                "see 'trundle criteria'",
+            )
+            for i, name in enumerate(section.curves)
+        ]
+        found: tuple[Criterion, ...] = tuple(c for c in curves if c is not None)
+        return Assessment(
+            criteria=found,
+            method=section.method,
+            percentile=section.percentile,
+            averaging=section.averaging,
+        )
+
+    def _unique_names(self) -> None:
+        for kind, names in {
+            "route and traffic": [s.name for k in ("route", "traffic") for s in self.file.items(k)],
+            "point": [s.name for s in self.file.items("point")],
+            "method": [s.name for s in self.file.items("method")],
+            "road": [road_label(s) for s in self.file.items("road")],
+        }.items():
+            for name, times in Counter(names).items():
+                if times > 1:
+                    self.problems.append(
+                        Problem(
+                            place=kind,
+                            value=f"{name!r} {times} times",
+                            rule="names must differ, for results are found by them",
+                            remedy="rename or remove one",
+                        )
+                    )
+
+    def _unknown(self, place: str, value: str, known: Iterable[str], what: str) -> None:
+        self.problems.append(
+            Problem(
+                place=place,
+                value=repr(value),
+                rule=f"must be the name of a {what} in this study",
+                remedy=f"there are: {', '.join(known) or 'none'}",
+            )
+        )
+
+
+def _road(section: schema.RoadSection) -> RoadClass:
+    return RoadClass(section.class_, level=section.level, waviness=section.waviness)
+
+
+def _floor_plan(section: schema.PlanFloorSection) -> FloorPlan:
+    material = Material(**dict(section.material))
+    x, y = np.array(section.x_lines), np.array(section.y_lines)
+
+    def size(rectangle: Any) -> Rectangle | None:
+        return None if rectangle is None else Rectangle(**dict(rectangle))
+
+    return FloorPlan(
+        name="plan",
+        x_lines=x,
+        y_lines=y,
+        x_extent=section.x_extent or (float(x[0]), float(x[-1])),
+        y_extent=section.y_extent or (float(y[0]), float(y[-1])),
+        slab=ShellSection(
+            thickness=section.slab_thickness,
+            material=material,
+            superimposed_mass=section.superimposed_mass,
+        ),
+        material=material,
+        beams_x=size(section.beams_x),
+        beams_y=size(section.beams_y),
+        secondary_y=size(section.secondary_y),
+        secondary_per_bay=section.secondary_per_bay,
+        column=size(section.column),
+        storey_below=section.storey_below,
+        storey_above=section.storey_above,
+        edges=dict(section.edges),
+        eccentric_beams=section.eccentric_beams,
+    )
+
+
+def _vehicle(name: str, section: Any) -> Vehicle:
+    if isinstance(section, schema.PlanarVehicleSection):
+        return build_vehicle(
+            name=name,
+            bodies=tuple(Body(**dict(b)) for b in section.bodies),
+            axles=tuple(Axle(**dict(a)) for a in section.axles),
+            hinges=tuple(Hinge(**dict(h)) for h in section.hinges),
+            source="study file",
+        )
+    return VEHICLES[section.kind]()

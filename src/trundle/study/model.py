@@ -1,0 +1,234 @@
+"""Hold a whole study in SI: what is run, on what, and what it is held against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from trundle.criteria import Criterion
+from trundle.road import RoadClass, RoughnessBand
+from trundle.route import DriveIn, Entry, Ramp, Route, StaticStart
+from trundle.signals import Averaging
+from trundle.simulate import Crossing, Interaction
+from trundle.structure import Floor, FloorPlan
+from trundle.study import schema
+from trundle.vehicle import Vehicle
+
+__all__ = [
+    "Assessment",
+    "Case",
+    "Drive",
+    "MethodPlan",
+    "Note",
+    "Printed",
+    "PrintedBound",
+    "Study",
+]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Drive:
+    """Hold a route with the vehicle that drives it.
+
+    Attributes
+    ----------
+    route : Route
+        Where and how fast.
+    vehicle : Vehicle
+        What drives.
+    run_in : float or None
+        Distance driven before the floor [m], see `trundle.simulate.Crossing`.
+    """
+
+    route: Route
+    vehicle: Vehicle
+    run_in: float | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """Hold what drives at once: one route, or several.
+
+    Attributes
+    ----------
+    name : str
+        Name of the route, or of the traffic.
+    routes : tuple of str
+        Names of the routes driven together.
+    """
+
+    name: str
+    routes: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MethodPlan:
+    """Hold a method with the entry that goes with it.
+
+    Attributes
+    ----------
+    name : str
+        Name in the study.
+    interaction : Decoupled or Coupled
+        The method.
+    entry : Ramp, DriveIn or StaticStart
+        How wheels come onto the floor.
+    """
+
+    name: str
+    interaction: Interaction
+    entry: Entry
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Assessment:
+    """Hold what the response is held against.
+
+    Attributes
+    ----------
+    criteria : tuple of Criterion
+        The curves.
+    method : str
+        Name of the method whose result is assessed.
+    percentile : float
+        Share of runs that a level must cover, 0 to 100.
+    averaging : {"max_1s", "slow", "event"}
+        Averaging rule of band levels.
+    """
+
+    criteria: tuple[Criterion, ...]
+    method: str
+    percentile: float
+    averaging: Averaging
+
+
+@dataclass(frozen=True, kw_only=True)
+class Printed:
+    """Hold published values of one cell: peak acceleration [m/s2] and RMS velocity [m/s]."""
+
+    case: str
+    road: str
+    method: str
+    peak_acceleration: float
+    rms_velocity: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrintedBound:
+    """Hold published upper bounds: peak acceleration [m/s2] and RMS velocity [m/s]."""
+
+    bound: str
+    road: str
+    method: str
+    peak_acceleration: float
+    rms_velocity: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Note:
+    """Hold a note for the report."""
+
+    title: str
+    text: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Study:
+    """Hold a study that has passed every check.
+
+    Attributes
+    ----------
+    title, source, text, content_hash : str
+        Title, path, text and hash of the study file.
+    seed, runs : int
+        Seed of all roads, and runs a cell.
+    duration : float
+        Length of every record [s].
+    floor : Floor
+        The meshed floor.
+    plan : FloorPlan
+        The plan that it was meshed from.
+    drives : mapping of str to Drive
+        Routes by name.
+    cases : tuple of Case
+        Single routes first, then traffic.
+    roads : mapping of str to RoadClass
+        Roads by label.
+    band : RoughnessBand
+        Waves that synthetic roads contain.
+    band_follows_dt : bool
+        Whether the band ends where a method's time step can no longer follow.
+    points : mapping of str to (x, y)
+        Where the response is read [m].
+    methods : tuple of MethodPlan
+        The methods, in the order of the file.
+    assessment : Assessment or None
+        What the response is held against.
+    printed, printed_bounds, notes : tuple
+        Published values to hold beside ours, and notes.
+    """
+
+    title: str
+    source: str
+    text: str
+    content_hash: str
+    seed: int
+    runs: int
+    duration: float
+    floor: Floor
+    plan: FloorPlan
+    drives: Mapping[str, Drive]
+    cases: tuple[Case, ...]
+    roads: Mapping[str, RoadClass]
+    band: RoughnessBand
+    band_follows_dt: bool
+    points: Mapping[str, tuple[float, float]]
+    methods: tuple[MethodPlan, ...]
+    assessment: Assessment | None
+    printed: tuple[Printed, ...]
+    printed_bounds: tuple[PrintedBound, ...]
+    notes: tuple[Note, ...]
+
+    def crossings(self, case: Case, road: str, method: MethodPlan) -> tuple[Crossing, ...]:
+        """Return the crossings of one cell."""
+        return tuple(
+            Crossing(
+                vehicle=drive.vehicle,
+                route=drive.route,
+                road=self.roads[road],
+                band=self.band_for(drive, method),
+                entry=method.entry,
+                run_in=drive.run_in,
+            )
+            for drive in (self.drives[name] for name in case.routes)
+        )
+
+    def band_for(self, drive: Drive, method: MethodPlan) -> RoughnessBand:
+        """Return the waves that a method's time step can follow at a route's speed."""
+        if not self.band_follows_dt:
+            return self.band
+        speed = float(drive.route.law.speed(0.0))
+        limit = 0.5 / (speed * method.interaction.integration.dt)
+        return RoughnessBand(
+            n_min=self.band.n_min,
+            n_max=min(self.band.n_max, limit),
+            contact_patch=self.band.contact_patch,
+            gaussian_amplitudes=self.band.gaussian_amplitudes,
+        )
+
+
+def entry_of(kind: str, length: float) -> Entry:
+    """Return the entry that a study file names."""
+    if kind == "ramp":
+        return Ramp(length=length)
+    if kind == "static":
+        return StaticStart(exit_length=length)
+    return DriveIn(length=length)
+
+
+def road_label(section: schema.RoadSection) -> str:
+    """Return the short label of a road: the class letter, with its level if not the mean."""
+    label = section.class_
+    if section.level != "geometric_mean":
+        label += f" {section.level}"
+    return label if section.waviness == 2.0 else f"{label} w={section.waviness:g}"

@@ -1,0 +1,270 @@
+"""Define the sections of a study file.
+
+Every section is checked by itself, so that the mistakes of all of them come at once.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field
+
+from trundle.study.fields import (
+    Acceleration,
+    AreaDensity,
+    DampingCoefficient,
+    Density,
+    Frequency,
+    Length,
+    Mass,
+    Name,
+    NonNegativeLength,
+    Place,
+    PositiveLength,
+    Pressure,
+    Rate,
+    Ratio,
+    RotaryInertia,
+    Section,
+    Speed,
+    Stiffness,
+    Time,
+    Wavenumber,
+)
+
+__all__ = [
+    "CriteriaSection",
+    "DampingSection",
+    "FloorSection",
+    "GeneralSection",
+    "MethodSection",
+    "NoteSection",
+    "PlanFloorSection",
+    "PointSection",
+    "PrintedBoundSection",
+    "PrintedSection",
+    "ReferenceFloorSection",
+    "RoadSection",
+    "RoughnessSection",
+    "RouteSection",
+    "TrafficSection",
+    "VehicleSection",
+]
+
+EdgeKind: TypeAlias = Literal["free", "symmetry", "pinned", "clamped"]
+_MANY = 1_000_000
+
+
+class GeneralSection(Section):
+    """Title, seed, number of runs and record length: the keys above the first table."""
+
+    title: Annotated[str, Field(min_length=1, max_length=200)]
+    seed: Annotated[int, Field(ge=0, lt=2**63)]
+    runs: Annotated[int, Field(ge=1, le=_MANY)]
+    duration: Time
+
+
+class ReferenceFloorSection(Section):
+    """The reference unit at a mesh size."""
+
+    kind: Literal["reference_unit"]
+    mesh_size: PositiveLength = 1.0
+
+
+class RectangleSection(Section):
+    """Width and depth of a beam or column."""
+
+    width: PositiveLength
+    depth: PositiveLength
+
+
+class MaterialSection(Section):
+    """An isotropic material."""
+
+    elastic_modulus: Pressure
+    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.2
+    density: Density
+
+
+class EdgesSection(Section):
+    """How each edge of the plan is held."""
+
+    x_min: EdgeKind = "free"
+    x_max: EdgeKind = "free"
+    y_min: EdgeKind = "free"
+    y_max: EdgeKind = "free"
+
+
+class PlanFloorSection(Section):
+    """A rectangular storey of bays."""
+
+    kind: Literal["plan"]
+    mesh_size: PositiveLength
+    x_lines: Annotated[tuple[Length, ...], Field(min_length=2)]
+    y_lines: Annotated[tuple[Length, ...], Field(min_length=2)]
+    x_extent: tuple[Length, Length] | None = None
+    y_extent: tuple[Length, Length] | None = None
+    slab_thickness: PositiveLength
+    superimposed_mass: AreaDensity = 0.0
+    material: MaterialSection
+    beams_x: RectangleSection | None = None
+    beams_y: RectangleSection | None = None
+    secondary_y: RectangleSection | None = None
+    secondary_per_bay: Annotated[int, Field(ge=1, le=50)] = 1
+    column: RectangleSection | None = None
+    storey_below: NonNegativeLength = 0.0
+    storey_above: NonNegativeLength = 0.0
+    eccentric_beams: bool = True
+    edges: EdgesSection = EdgesSection()
+
+
+FloorSection: TypeAlias = Annotated[
+    ReferenceFloorSection | PlanFloorSection, Field(discriminator="kind")
+]
+
+
+class BodySection(Section):
+    """A rigid body of a planar vehicle."""
+
+    mass: Annotated[Mass, Field(gt=0.0)]
+    pitch_inertia: RotaryInertia = 0.0
+    centre: Length = 0.0
+
+
+class AxleSection(Section):
+    """An axle of a planar vehicle."""
+
+    body: Annotated[int, Field(ge=0)] = 0
+    setback: NonNegativeLength
+    stiffness: Annotated[Stiffness, Field(gt=0.0)]
+    damping: DampingCoefficient = 0.0
+    axle_mass: Mass = 0.0
+    tyre_stiffness: Stiffness = 0.0
+    tyre_damping: DampingCoefficient = 0.0
+
+
+class HingeSection(Section):
+    """A hinge between two bodies of a planar vehicle."""
+
+    bodies: tuple[int, int]
+    setback: Length
+
+
+class PlanarVehicleSection(Section):
+    """A vehicle built from bodies, hinges and axles."""
+
+    kind: Literal["planar"]
+    bodies: Annotated[tuple[BodySection, ...], Field(min_length=1)]
+    axles: Annotated[tuple[AxleSection, ...], Field(min_length=1)]
+    hinges: tuple[HingeSection, ...] = ()
+
+
+class LibraryVehicleSection(Section):
+    """A vehicle of the library."""
+
+    kind: Literal["container_truck_40ft", "articulated_truck_5_axle"]
+
+
+VehicleSection: TypeAlias = Annotated[
+    LibraryVehicleSection | PlanarVehicleSection, Field(discriminator="kind")
+]
+
+
+class RoadSection(Section):
+    """A road class."""
+
+    class_: Annotated[Literal["A", "B", "C", "D", "E", "F", "G", "H"], Field(alias="class")]
+    level: Literal["lower", "geometric_mean", "upper"] = "geometric_mean"
+    waviness: Annotated[float, Field(ge=1.0, le=4.0)] = 2.0
+
+
+class RoughnessSection(Section):
+    """What waves a synthetic road contains."""
+
+    n_min: Wavenumber = 0.011
+    n_max: Wavenumber = 2.83
+    n_max_follows_dt: bool = True
+    contact_patch: NonNegativeLength = 0.0
+    gaussian_amplitudes: bool = False
+
+
+class RouteSection(Section):
+    """Where a vehicle drives, and how fast."""
+
+    name: Name
+    vehicle: Name
+    path: Annotated[tuple[Place, ...], Field(min_length=2)]
+    speed: Speed
+    run_in: NonNegativeLength | None = None
+
+
+class TrafficSection(Section):
+    """Several routes driven at once."""
+
+    name: Name
+    routes: Annotated[tuple[Name, ...], Field(min_length=2)]
+
+
+class PointSection(Section):
+    """A place where the response is read."""
+
+    name: Name
+    at: Place
+
+
+class DampingSection(Section):
+    """Damping of the floor: a ratio in every mode, or Rayleigh's two coefficients."""
+
+    ratio: Ratio | None = None
+    rayleigh_alpha: Rate | None = None
+    rayleigh_beta: Time | None = None
+
+
+class MethodSection(Section):
+    """How vehicle and floor are computed."""
+
+    name: Name
+    interaction: Literal["decoupled", "coupled"]
+    integration: Literal["modal", "newmark"] = "modal"
+    f_max: Frequency | None = None
+    dt: Time
+    damping: DampingSection
+    contact: Literal["smooth", "hat"] = "smooth"
+    entry: Literal["drive_in", "ramp", "static"] = "drive_in"
+    entry_length: PositiveLength | None = None
+
+
+class CriteriaSection(Section):
+    """What the response is held against, and by which method's result."""
+
+    curves: Annotated[tuple[str, ...], Field(min_length=1)]
+    method: Name
+    percentile: Annotated[float, Field(gt=0.0, le=100.0)] = 95.0
+    averaging: Literal["max_1s", "slow", "event"] = "max_1s"
+
+
+class PrintedSection(Section):
+    """A published pair of values to hold beside ours."""
+
+    case: Name
+    road: str
+    method: Name
+    peak_acceleration: Acceleration
+    rms_velocity: Speed
+
+
+class PrintedBoundSection(Section):
+    """A published upper bound to hold beside ours."""
+
+    bound: Literal["single", "absolute maximum", "multiple vehicles"]
+    road: str
+    method: Name
+    peak_acceleration: Acceleration
+    rms_velocity: Speed
+
+
+class NoteSection(Section):
+    """A note that the report prints."""
+
+    title: Annotated[str, Field(min_length=1, max_length=200)]
+    text: Annotated[str, Field(min_length=1, max_length=5000)]

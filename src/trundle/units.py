@@ -1,0 +1,136 @@
+"""Read quantities as people write them, and print them as engineers read them.
+
+This is the only module that knows a unit other than SI's. Only `study`, `report` and `cli`
+use it.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import Any
+
+from trundle.errors import InputError
+
+__all__ = [
+    "DIMENSIONS",
+    "GAL",
+    "KMH",
+    "MICROMETRE_PER_SECOND",
+    "to_si",
+]
+
+GAL = 0.01
+"""One gal [m/s2]."""
+
+KMH = 1.0 / 3.6
+"""One kilometre per hour [m/s]."""
+
+MICROMETRE_PER_SECOND = 1e-6
+"""One micrometre per second [m/s]."""
+
+DIMENSIONS: dict[str, tuple[str, str]] = {
+    "length": ("m", "1 m"),
+    "time": ("s", "25 ms"),
+    "speed": ("m/s", "15 km/h"),
+    "frequency": ("1/s", "20 Hz"),
+    "rate": ("1/s", "0.8587 1/s"),
+    "wavenumber": ("1/m", "0.011 1/m"),
+    "mass": ("kg", "40.7 t"),
+    "area density": ("kg/m**2", "500 kg/m2"),
+    "density": ("kg/m**3", "2450 kg/m3"),
+    "pressure": ("kg/m/s**2", "30 GPa"),
+    "stiffness": ("kg/s**2", "14700 N/cm"),
+    "damping coefficient": ("kg/s", "10 kN s/m"),
+    "moment of inertia": ("kg*m**2", "4600 kg m2"),
+    "acceleration": ("m/s**2", "0.3 gal"),
+    "ratio": ("", "3 %"),
+}
+"""Each kind of quantity: its SI unit and an example to copy."""
+
+_QUANTITY = re.compile(
+    r"^\s*(?P<number>[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?)\s*(?P<unit>(1/)?[^\d\s.+-].{0,30})?$"
+)
+_CYCLIC = ("frequency", "wavenumber")
+_UNIT_CHARACTERS = re.compile(r"^[A-Za-zµμ%/*^()·\s\d²³-]*$")
+_POWER = re.compile(r"(?<=[A-Za-zµμ])([23])\b")
+
+
+def to_si(text: object, dimension: str) -> float:
+    """Turn a quantity with its unit into a number in SI.
+
+    Parameters
+    ----------
+    text : str, or a plain number for a ratio
+        Such as ``"15 km/h"``, ``"14700 N/cm"``, ``"500 kg/m2"`` or ``"3 %"``.
+    dimension : str
+        A key of `DIMENSIONS`.
+
+    Returns
+    -------
+    float
+        Value in SI.
+
+    Raises
+    ------
+    InputError
+        No number, no unit, a unit that is unknown or of another kind.
+
+    Examples
+    --------
+    >>> to_si("14700 N/cm", "stiffness")
+    1470000.0
+    """
+    unit_si, example = DIMENSIONS[dimension]
+    if isinstance(text, int | float) and not isinstance(text, bool) and dimension == "ratio":
+        return _finite(float(text), example)
+    if not isinstance(text, str):
+        raise InputError(f"a {dimension} is written as text with its unit, such as {example!r}")
+    match = _QUANTITY.match(text)
+    if match is None:
+        raise InputError(f"a {dimension} is a number and a unit, such as {example!r}")
+    number, unit = float(match["number"]), (match["unit"] or "").strip()
+    if not unit:
+        if dimension == "ratio":
+            return _finite(number, example)
+        raise InputError(f"the unit is missing; write it after the number, such as {example!r}")
+    return _finite(number * _factor(unit, unit_si, dimension, example), example)
+
+
+def _finite(number: float, example: str) -> float:
+    if not math.isfinite(number):
+        raise InputError(f"the number must be finite, such as {example!r}")
+    return number
+
+
+@cache
+def _factor(unit: str, unit_si: str, dimension: str, example: str) -> float:
+    if not _UNIT_CHARACTERS.match(unit):
+        raise InputError(f"unit {unit!r} is not understood; write it such as in {example!r}")
+    registry, pint = _registry()
+    if dimension in _CYCLIC and "rad" in unit:
+        raise InputError(f"a {dimension} counts cycles, not radians; divide by 2 pi: {example!r}")
+    spelled = unit.replace("·", "*").replace("²", "**2").replace("³", "**3").replace("^", "**")
+    spelled = _POWER.sub(r"**\1", spelled)
+    try:
+        factor = registry.Quantity(1.0, registry.parse_units(spelled)).to(unit_si).magnitude
+    except pint.DimensionalityError:
+        raise InputError(
+            f"unit {unit!r} is not one of {dimension}; write such as {example!r}"
+        ) from None
+    except Exception:  # pint raises half a dozen unrelated types on text it cannot parse
+        raise InputError(f"unit {unit!r} is unknown; write it such as in {example!r}") from None
+    return float(factor)
+
+
+@cache
+def _registry() -> tuple[Any, Any]:
+    import pint  # a tenth of a second that commands without a study file need not spend
+
+    registry = pint.UnitRegistry(on_redefinition="ignore")
+    registry.define("gal = 0.01 * meter / second ** 2")
+    registry.define("kNs = kilonewton * second")
+    registry.define("cycle = 1")
+    registry.define("Ns = newton * second")
+    return registry, pint

@@ -7,6 +7,24 @@ from __future__ import annotations
 
 import importlib
 from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from trundle import (
+        criteria,
+        dynamics,
+        errors,
+        report,
+        response,
+        road,
+        route,
+        signals,
+        simulate,
+        structure,
+        study,
+        units,
+        vehicle,
+    )
 
 __version__ = "0.1.0"
 

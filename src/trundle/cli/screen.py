@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 from typing import TypeAlias
 
@@ -38,7 +38,7 @@ def print_table(
 
 
 @contextmanager
-def progress_bar() -> Iterator[Tell]:
+def progress_bar() -> Generator[Tell]:
     """Show a bar on a terminal, and one line a stage elsewhere."""
     if not sys.stderr.isatty():
         yield _line_teller()

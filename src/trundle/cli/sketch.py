@@ -18,24 +18,24 @@ def plan_sketch(study: Study) -> str:
     height = int(np.clip(_WIDTH * _ASPECT * (y1 - y0) / (x1 - x0), 8, 48))
     grid = np.full((height, _WIDTH), " ")
 
-    def put(places: np.ndarray, mark: str) -> None:
+    def _put(places: np.ndarray, mark: str) -> None:
         column = np.clip((places[:, 0] - x0) / (x1 - x0) * (_WIDTH - 1), 0, _WIDTH - 1)
         row = np.clip((places[:, 1] - y0) / (y1 - y0) * (height - 1), 0, height - 1)
         grid[np.round(row).astype(int), np.round(column).astype(int)] = mark
 
     if study.plan.column:
         lines = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
-        put(np.stack([line.ravel() for line in lines], axis=1), "+")
+        _put(np.stack([line.ravel() for line in lines], axis=1), "+")
     legend = []
     for i, (name, drive) in enumerate(study.drives.items()):
         letter = chr(ord("a") + i % 26)
         stations = np.linspace(0.0, drive.route.length, 400)
-        put(drive.route.locate(stations)[0], letter)
+        _put(drive.route.locate(stations)[0], letter)
         speed = 3.6 * float(drive.route.law.speed(0.0))
-        put(drive.route.points[-1:], ">")
+        _put(drive.route.points[-1:], ">")
         legend.append(f"  {letter}  route {name}: {speed:g} km/h, ends at >")
     for i, (name, place) in enumerate(study.points.items()):
-        put(np.array([place]), str((i + 1) % 10))
+        _put(np.array([place]), str((i + 1) % 10))
         legend.append(f"  {(i + 1) % 10}  point {name} at ({place[0]:g}, {place[1]:g}) m")
     border = "." + "-" * _WIDTH + "."
     rows = ["|" + "".join(row) + "|" for row in grid[::-1]]

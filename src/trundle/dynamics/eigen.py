@@ -109,7 +109,7 @@ def natural_modes(
     """
     positive("f_max", f_max)
     n_dofs = int(mass.shape[0])
-    if n_dofs <= _DENSE_LIMIT or not sparse.issparse(stiffness):
+    if n_dofs <= _DENSE_LIMIT or isinstance(mass, np.ndarray) or isinstance(stiffness, np.ndarray):
         eigenvalues, shapes = _dense(mass, stiffness, f_max)
     else:
         eigenvalues, shapes = _block_lanczos(mass, stiffness, f_max, backend, progress)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -14,7 +15,7 @@ __all__ = ["COLOURS", "STYLE", "Picture", "new_figure", "save"]
 # Okabe and Ito's palette (2008), told apart by nearly everybody.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F")
 
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.titlesize": 10.0,
     "axes.grid": True,
@@ -51,12 +52,12 @@ class Picture:
 
 
 def new_figure(
-    width: float = 7.2, height: float = 3.6, *, rows: int = 1, columns: int = 1, **options: object
+    width: float = 7.2, height: float = 3.6, *, rows: int = 1, columns: int = 1, share: str = ""
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure [inch] and its axes in reading order."""
+    """Return a figure [inch] and its axes in reading order; share holds x, y, both or none."""
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.subplots(rows, columns, squeeze=False, **options)
+    axes = figure.subplots(rows, columns, squeeze=False, sharex="x" in share, sharey="y" in share)
     return figure, list(axes.ravel())
 
 

@@ -133,7 +133,8 @@ def _edges(elements: Array) -> Array:
 
 def mesh_figure(floor: Floor) -> Figure:
     """Draw the finite-element mesh in perspective (Figure 10)."""
-    figure, (axes,) = new_figure(7.2, 5.4, subplot_kw={"projection": "3d"})
+    figure = Figure(figsize=(7.2, 5.4), layout="constrained")
+    axes = figure.add_subplot(projection="3d")
     for group in floor.shells:
         lines = floor.nodes[_edges(group.elements)]
         axes.add_collection(
@@ -146,7 +147,7 @@ def mesh_figure(floor: Floor) -> Figure:
     low, high = floor.nodes.min(axis=0), floor.nodes.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2] + 1e-3))
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
-    axes.set_box_aspect(np.maximum(high - low, 1.0), zoom=1.15)
+    axes.set_box_aspect(np.maximum(high - low, 1.0))
     axes.view_init(elev=24.0, azim=-122.0)
     axes.text2D(
         0.02,
@@ -166,8 +167,7 @@ def modes_figure(floor: Floor, modes: Modes, *, n_shown: int = 8) -> Figure:
         2.7 * int(np.ceil(n_shown / columns)),
         rows=int(np.ceil(n_shown / columns)),
         columns=columns,
-        sharex=True,
-        sharey=True,
+        share="xy",
     )
     elements = floor.shells[0].elements
     mesh = Triangulation(

@@ -26,7 +26,7 @@ def history_figure(
     result: StudyResult, case: str, road: str, methods: Sequence[str], point: str
 ) -> Figure:
     """Draw the first run's acceleration by each method (Figures 11 to 15)."""
-    figure, axes = new_figure(7.2, 1.6 * len(methods) + 0.4, rows=len(methods), sharex=True)
+    figure, axes = new_figure(7.2, 1.6 * len(methods) + 0.4, rows=len(methods), share="x")
     i = list(result.study.points).index(point)
     for number, (panel, method) in enumerate(zip(axes, methods, strict=True)):
         history = result.cells[CellKey(case, road, method)].history
@@ -138,7 +138,7 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
 
 def comparison_figure(rows: Sequence[ComparisonRow]) -> Figure:
     """Draw our ranges with the printed values on them, for both columns of Table 2."""
-    figure, axes = new_figure(7.2, 0.30 * len(rows) + 1.2, columns=2, sharey=True)
+    figure, axes = new_figure(7.2, 0.30 * len(rows) + 1.2, columns=2, share="y")
     for panel, what, unit in (
         (axes[0], "peak", "peak acceleration [gal]"),
         (axes[1], "rms", "record RMS velocity [um/s]"),

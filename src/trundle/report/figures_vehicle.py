@@ -75,7 +75,7 @@ def vehicle_modes_figure(vehicle: Vehicle) -> Figure:
     """Draw the natural frequencies with the motion over each axle (Figure 6)."""
     frequencies, shapes = vehicle.mode_shapes()
     n_shown = min(len(frequencies), 6)
-    figure, axes = new_figure(7.2, 2.6, columns=n_shown, sharey=True)
+    figure, axes = new_figure(7.2, 2.6, columns=n_shown, share="y")
     for i, panel in enumerate(axes):
         panel.axhline(0.0, color="black", linewidth=0.8)
         panel.bar(range(1, vehicle.n_contacts + 1), shapes[:, i], color=COLOURS[i], width=0.5)
@@ -99,7 +99,7 @@ def axle_forces_figure(
     duration: float = 25.0,
 ) -> Figure:
     """Draw the dynamic axle forces of one run at several speeds [m/s] (Figure 7)."""
-    figure, axes = new_figure(7.2, 1.9 * len(speeds), rows=len(speeds), sharex=True, sharey=True)
+    figure, axes = new_figure(7.2, 1.9 * len(speeds), rows=len(speeds), share="xy")
     for panel, speed in zip(axes, speeds, strict=True):
         route = Route.straight((0.0, 0.0), (1.0, 0.0), speed=speed, name="force")
         crossing = Crossing(

@@ -8,6 +8,7 @@ import numpy as np
 
 from trundle.criteria import Verdict
 from trundle.response import percentile_rank, upper_bounds
+from trundle.study.model import PrintedBound
 from trundle.study.run import CellKey, StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
@@ -132,23 +133,15 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
     many = [case.name for case in study.cases if len(case.routes) > 1]
     rows = []
     for printed in study.printed_bounds:
-
-        def median(case: str, what: str, printed=printed) -> float:  # noqa: ANN001
-            cell = result.cells[CellKey(case, printed.road, printed.method)]
-            return float(np.median(getattr(cell, what)[:, 0]))
-
-        peaks = upper_bounds([median(case, "peak_acceleration") for case in singles])
-        rms = upper_bounds([median(case, "rms_velocity") for case in singles])
+        medians = {case: _medians(result, case, printed) for case in (*singles, *many)}
+        peaks = upper_bounds([medians[case][0] for case in singles])
+        rms = upper_bounds([medians[case][1] for case in singles])
         if printed.bound == "single":
             ours = (peaks.largest, rms.largest, "largest single route")
         elif printed.bound == "absolute maximum":
             ours = (peaks.absolute_sum, rms.root_sum_square, "a: sum; v: root sum of squares")
         elif many:
-            ours = (
-                median(many[0], "peak_acceleration"),
-                median(many[0], "rms_velocity"),
-                f"simulated: {many[0]}",
-            )
+            ours = (*medians[many[0]], f"simulated: {many[0]}")
         else:
             continue
         rows.append(
@@ -164,6 +157,12 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
             )
         )
     return rows
+
+
+def _medians(result: StudyResult, case: str, printed: PrintedBound) -> tuple[float, float]:
+    cell = result.cells[CellKey(case, printed.road, printed.method)]
+    peak, rms = cell.peak_acceleration[:, 0], cell.rms_velocity[:, 0]
+    return float(np.median(peak)), float(np.median(rms))
 
 
 def verdict_matrix(result: StudyResult) -> tuple[list[str], list[tuple[str, list[Verdict]]]]:

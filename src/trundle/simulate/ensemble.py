@@ -229,6 +229,7 @@ def contact_forces(
     Returns
     -------
     time : ndarray of float, shape (n_steps,)
+        Time since the front axle stood at the start [s].
     forces : ndarray of float, shape (n_runs, n_steps, n_contacts)
         Static and dynamic together, positive when pressing on the ground.
     """

@@ -58,7 +58,7 @@ class Runs:
 
     @property
     def sampling_frequency(self) -> float:
-        """Samples per second [Hz]."""
+        """Sampling frequency [Hz]."""
         return 1.0 / self.dt
 
     def point(self, name: str) -> int:

@@ -62,7 +62,7 @@ def beam_stiffness(
         rigidity = material.elastic_modulus * inertia
         phi = _shear_parameter(rigidity, material.shear_modulus * shear_area, lengths)
         block = _bending_stiffness(rigidity, phi, lengths)
-        local[np.ix_(range(len(ends)), plane, plane)] += block * np.outer(signs, signs)
+        local[np.ix_(np.arange(len(ends)), plane, plane)] += block * np.outer(signs, signs)
     return _with_offset(rotate_blocks(local, frames), offset)
 
 
@@ -84,14 +84,14 @@ def beam_mass(
     polar = section.inertia_y + section.inertia_z
     for dof, mass_per_length in ((0, density * section.area), (3, density * polar)):
         pair = np.array([dof, dof + 6])
-        local[np.ix_(range(len(ends)), pair, pair)] += (
+        local[np.ix_(np.arange(len(ends)), pair, pair)] += (
             mass_per_length * lengths[:, None, None] * bar
         )
     for plane, signs, inertia, shear_area in _planes(section):
         rigidity = section.material.elastic_modulus * inertia
         phi = _shear_parameter(rigidity, section.material.shear_modulus * shear_area, lengths)
         block = _bending_mass(density * section.area, density * inertia, phi, lengths)
-        local[np.ix_(range(len(ends)), plane, plane)] += block * np.outer(signs, signs)
+        local[np.ix_(np.arange(len(ends)), plane, plane)] += block * np.outer(signs, signs)
     return _with_offset(rotate_blocks(local, frames), offset)
 
 

@@ -89,9 +89,9 @@ def shell_mass(
         shape, _, det = _shape_functions(local, xi, eta)
         block = det[:, None, None] * np.outer(shape, shape)
         for dofs in (_UX, _UY, _UZ):
-            mass[np.ix_(range(len(corners)), dofs, dofs)] += section.mass_per_area * block
+            mass[np.ix_(np.arange(len(corners)), dofs, dofs)] += section.mass_per_area * block
         for dofs in (_RX, _RY, _RZ):
-            mass[np.ix_(range(len(corners)), dofs, dofs)] += rotary * block
+            mass[np.ix_(np.arange(len(corners)), dofs, dofs)] += rotary * block
     return rotate_blocks(mass, frames)
 
 
@@ -147,7 +147,7 @@ def _quadratic_form(rows: Array, law: Array, other: Array, weight: Array) -> Arr
 
 
 def _add_to(stiffness: Array, dofs: Array, block: Array) -> None:
-    stiffness[np.ix_(range(len(stiffness)), dofs, dofs)] += block
+    stiffness[np.ix_(np.arange(len(stiffness)), dofs, dofs)] += block
 
 
 def _add_membrane(stiffness: Array, local: Array, section: ShellSection) -> None:

@@ -8,7 +8,7 @@ import os
 import platform
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -66,7 +66,7 @@ def _nearest_folder(folder: Path) -> Path:
 
 
 @contextmanager
-def new_results_folder(folder: Path) -> Iterator[Path]:
+def new_results_folder(folder: Path) -> Generator[Path]:
     """Give a folder to fill; it takes its place only when all went well.
 
     An earlier result of that name is replaced at the end; after an error or an interrupt it

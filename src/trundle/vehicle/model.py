@@ -108,6 +108,10 @@ class Vehicle:
             stiffness=self.system.stiffness - e.T @ (self.contact_stiffness[:, None] * e),
         )
 
+    @property
+    def _stiffness_and_mass(self) -> tuple[Array, Array]:
+        return np.asarray(self.system.stiffness), np.asarray(self.system.mass)
+
     def natural_frequencies(self) -> Float[Array, " dofs"]:
         """Return the undamped natural frequencies on rigid ground, rising [Hz].
 
@@ -116,7 +120,7 @@ class Vehicle:
         UnrestrainedModeError
             The vehicle does not stand on its contacts.
         """
-        squares = linalg.eigh(self.system.stiffness, self.system.mass, eigvals_only=True)
+        squares = linalg.eigh(*self._stiffness_and_mass, eigvals_only=True)
         if squares[0] <= 1e-9 * squares[-1]:
             raise UnrestrainedModeError(
                 f"vehicle {self.name!r} does not stand on its contacts: a motion has no stiffness"
@@ -125,7 +129,7 @@ class Vehicle:
 
     def mode_shapes(self) -> tuple[Float[Array, " dofs"], Float[Array, "contacts dofs"]]:
         """Return natural frequencies [Hz] and the motion over each contact, peak 1."""
-        squares, shapes = linalg.eigh(self.system.stiffness, self.system.mass)
+        squares, shapes = linalg.eigh(*self._stiffness_and_mass)
         seen = self.contact_map @ shapes
         peak = seen[np.abs(seen).argmax(axis=0), np.arange(seen.shape[1])]
         return np.sqrt(squares) / (2.0 * np.pi), seen / peak

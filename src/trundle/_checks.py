@@ -12,8 +12,8 @@ from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from trundle._typing import ArrayLike
 from trundle.errors import InputError
 
 

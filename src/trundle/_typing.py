@@ -5,7 +5,8 @@ Shapes are checked at run time only in the tests, where jaxtyping's import hook 
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from collections.abc import Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 from scipy import sparse
@@ -18,3 +19,6 @@ SparseMatrix: TypeAlias = sparse.csc_array | sparse.csr_array
 
 Matrix: TypeAlias = np.ndarray | sparse.csc_array | sparse.csr_array
 """A dense or sparse real matrix."""
+
+ArrayLike: TypeAlias = float | Sequence[Any] | np.ndarray
+"""Numbers at the public edge: one, a sequence of them (nested or not), or an array."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
-from typing import Literal, Self, TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 from jaxtyping import Float
@@ -80,7 +80,7 @@ class Criterion:
         value = np.exp(np.interp(np.log(f), np.log(self.frequencies), np.log(self.limits)))
         return np.where(inside, value, np.nan)
 
-    def flattened(self) -> Self:
+    def flattened(self) -> Criterion:
         """Return the curve with its value at 8 Hz held constant down to 1 Hz.
 
         This is the paper's second branch, for equipment with pneumatic isolation.

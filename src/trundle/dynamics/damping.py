@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Self, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float
@@ -47,7 +47,7 @@ class Rayleigh:
         )
 
     @classmethod
-    def through(cls, ratio: float, f_low: float, f_high: float) -> Self:
+    def through(cls, ratio: float, f_low: float, f_high: float) -> Rayleigh:
         """Give one damping ratio at two frequencies [Hz]."""
         ratio = within("damping ratio", ratio, 0.0, 1.0)
         low = 2.0 * np.pi * positive("f_low", f_low)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -56,6 +56,7 @@ class Newmark:
         return f"direct integration, Newmark {name}, dt = {1e3 * self.dt:g} ms"
 
 
+@runtime_checkable
 class _Solver(Protocol):
     def solve(self, right_hand_side: Array) -> Array: ...
 
@@ -97,9 +98,7 @@ class NewmarkPropagator:
     def start(self, displacement: Float[Array, "dofs runs"]) -> State:
         """Return a state at rest, in equilibrium at the given displacement."""
         zero = np.zeros_like(displacement)
-        return State(
-            displacement=displacement, velocity=zero, acceleration=zero, force=np.zeros((0, 0))
-        )
+        return State(displacement=displacement, velocity=zero, acceleration=zero, force=zero[:0])
 
     def predict(self, state: State, force: Float[Array, "dofs runs"] | None = None) -> Motion:
         """Return the motion at the step's end under a known force there (none: zero)."""

@@ -10,7 +10,7 @@ import importlib
 import importlib.util
 import weakref
 from functools import cache
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from scipy import sparse
@@ -25,6 +25,7 @@ BACKENDS = ("pardiso", "superlu")
 """Names of the sparse solvers, in the order of preference."""
 
 
+@runtime_checkable
 class Factor(Protocol):
     """What a factorised symmetric matrix A can do."""
 

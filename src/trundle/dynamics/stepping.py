@@ -9,7 +9,7 @@ for their contact force alone, and neither is ever factorised again.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from jaxtyping import Float
 
@@ -44,6 +44,7 @@ class Motion:
     velocity: Float[Array, "dofs runs"]
 
 
+@runtime_checkable
 class Propagator(Protocol):
     """One scheme, prepared for one system and one time step."""
 

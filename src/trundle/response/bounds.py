@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from trundle._typing import ArrayLike
 from trundle.errors import InputError
 
 __all__ = ["UpperBounds", "percentile_rank", "upper_bounds"]

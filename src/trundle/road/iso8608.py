@@ -7,10 +7,9 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from trundle._checks import one_of, positive, set_frozen, within
-from trundle._typing import Array
+from trundle._typing import Array, ArrayLike
 
 __all__ = [
     "CLASS_NAMES",

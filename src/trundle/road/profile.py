@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from trundle._checks import frozen_array, set_frozen
-from trundle._typing import Array
+from trundle._typing import Array, ArrayLike
 from trundle.errors import InputError
 
 __all__ = ["Profile"]
@@ -58,12 +56,12 @@ class Profile:
         )
 
     @classmethod
-    def smooth(cls) -> Self:
+    def smooth(cls) -> Profile:
         """Return a road without roughness."""
         return cls(station=np.array([0.0, 1.0]), elevation=np.zeros(2), slope=np.zeros(2))
 
     @classmethod
-    def piecewise_linear(cls, station: ArrayLike, elevation: ArrayLike) -> Self:
+    def piecewise_linear(cls, station: ArrayLike, elevation: ArrayLike) -> Profile:
         """Join points by straight lines; the slope jumps at each point."""
         s, z = (np.asarray(values, float) for values in (station, elevation))
         slopes = np.diff(z) / np.diff(s)
@@ -74,7 +72,7 @@ class Profile:
         )
 
     @classmethod
-    def from_samples(cls, station: ArrayLike, elevation: ArrayLike) -> Self:
+    def from_samples(cls, station: ArrayLike, elevation: ArrayLike) -> Profile:
         """Fit a twice continuously differentiable curve through measured points.
 
         Parameters

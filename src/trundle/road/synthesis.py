@@ -103,10 +103,11 @@ def synthesise(
             f"spacing must be at most {0.5 / band.n_max:g} m to hold waves of n_max = "
             f"{band.n_max:g} cycle/m; got {spacing:g} m"
         )
-    # The period covers the longest wave, so a short road still has its lowest frequency.
-    period = max(length, 1.0 / band.n_min)
+    # The period covers the longest wave, so a short road still has its lowest frequency. It
+    # does not depend on the spacing: a finer one adds short waves and keeps the long ones.
+    period = 1.01 * max(length, 1.0 / band.n_min)
     n_samples = int(fft.next_fast_len(int(np.ceil(period / spacing)) + 1, real=True))
-    step = period / (n_samples - 1)
+    step = period / n_samples
     spectrum, waves = _draw(road, band, n_samples, step, rng)
     elevation = fft.irfft(spectrum, n_samples)
     slope = fft.irfft(2j * np.pi * waves * spectrum, n_samples)

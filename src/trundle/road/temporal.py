@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from trundle._checks import count, positive
-from trundle._typing import Array
+from trundle._typing import Array, ArrayLike
 from trundle.road.iso8608 import RoadClass
 
 __all__ = ["temporal_psd", "temporal_psd_two_sided"]

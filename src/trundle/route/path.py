@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
-from numpy.typing import ArrayLike
 
 from trundle._checks import finite, frozen_array, positive, set_frozen
-from trundle._typing import Array
+from trundle._typing import Array, ArrayLike
 from trundle.errors import InputError
 
 __all__ = ["ConstantSpeed", "Route", "SpeedLaw", "SteadyAcceleration"]
 
 
+@runtime_checkable
 class SpeedLaw(Protocol):
     """Give distance travelled and speed as functions of time."""
 
@@ -50,7 +50,7 @@ class ConstantSpeed:
 
     def distance(self, time: ArrayLike) -> Float[Array, ...]:
         """Return V t [m]."""
-        return self.value * np.asarray(time, float)
+        return np.asarray(self.value * np.asarray(time, float))
 
     def speed(self, time: ArrayLike) -> Float[Array, ...]:
         """Return V at every time [m/s]."""
@@ -87,17 +87,18 @@ class SteadyAcceleration:
     def _moving_time(self, time: ArrayLike) -> Array:
         t = np.asarray(time, float)
         if self.acceleration < 0.0:
-            t = np.minimum(t, -self.initial / self.acceleration)
+            t = np.asarray(np.minimum(t, -self.initial / self.acceleration))
         return t
 
     def distance(self, time: ArrayLike) -> Float[Array, ...]:
         """Return ``v0 t + a t^2 / 2`` [m]."""
         t = self._moving_time(time)
-        return self.initial * t + 0.5 * self.acceleration * np.maximum(t, 0.0) ** 2
+        return np.asarray(self.initial * t + 0.5 * self.acceleration * np.maximum(t, 0.0) ** 2)
 
     def speed(self, time: ArrayLike) -> Float[Array, ...]:
         """Return ``v0 + a t`` [m/s]."""
-        return self.initial + self.acceleration * np.maximum(self._moving_time(time), 0.0)
+        moving = np.maximum(self._moving_time(time), 0.0)
+        return np.asarray(self.initial + self.acceleration * moving)
 
     def time_to(self, distance: float) -> float:
         """Return the time at which a distance is reached, infinity if it never is [s]."""
@@ -139,7 +140,7 @@ class Route:
     @classmethod
     def straight(
         cls, start: ArrayLike, end: ArrayLike, *, speed: float, name: str = "route"
-    ) -> Self:
+    ) -> Route:
         """Drive from one point to another [m] at constant speed [m/s]."""
         ends = np.array([start, end], dtype=float)
         return cls(points=ends, law=ConstantSpeed(speed), name=name)
@@ -155,9 +156,9 @@ class Route:
         """Length of the line [m]."""
         return float(self.corner_stations[-1])
 
-    def reversed(self) -> Self:
+    def reversed(self) -> Route:
         """Return the same line driven the other way."""
-        return type(self)(points=self.points[::-1], law=self.law, name=self.name)
+        return Route(points=self.points[::-1], law=self.law, name=self.name)
 
     def locate(
         self, station: ArrayLike, lateral: ArrayLike = 0.0

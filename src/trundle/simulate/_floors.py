@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -27,6 +27,7 @@ Reading = tuple[Array, Array, Array]
 """Displacement, velocity and acceleration, each of shape (n_points, n_runs)."""
 
 
+@runtime_checkable
 class ContactFloor(Protocol):
     """What the contact solver needs to know of a floor at one step.
 

@@ -17,7 +17,7 @@ from trundle.structure import Floor
 
 __all__ = ["RoadUnderWheels", "Timeline", "lay_out", "operator_rows", "roads_under_wheels"]
 
-_MARGIN = 1.0  # m of road beyond the last wheel, so that no wheel ever runs off its profile
+_MARGIN = 10.0  # m of road beyond the wheels, so that none runs off its profile
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,24 +63,32 @@ def lay_out(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Time
     static = [isinstance(crossing.entry, StaticStart) for crossing in crossings]
     if any(static) and not all(static):
         raise InputError("either every crossing starts in static equilibrium or none does")
-    run_in = 0.0 if any(static) else max(crossing.run_in_time for crossing in crossings)
-    n_run_in = int(np.ceil(run_in / dt - 1e-9))
+    starts = [_own_start(crossing, dt) for crossing in crossings]
+    n_run_in = max(0, *(int(np.ceil(-start / dt - 1e-9)) for start in starts))
     n_steps = round(duration / dt)
     if n_steps < 2:
         raise InputError(f"duration must hold at least 2 steps of {dt:g} s; got {duration:g} s")
     time = dt * np.arange(-n_run_in, n_steps + 1)
     stations, speeds = [], []
-    for crossing in crossings:
+    for crossing, start in zip(crossings, starts, strict=True):
         law, clock = crossing.route.law, time - crossing.depart
-        moving = np.ones_like(clock)
-        if isinstance(crossing.entry, StaticStart):
-            moving, clock = (clock >= 0.0).astype(float), np.maximum(clock, 0.0)
+        # Before its own start a vehicle stands still, so that it drives the same way whether
+        # others have a longer run-in or not.
+        moving = time > start + 0.5 * dt
+        clock = np.maximum(clock, start - crossing.depart)
         front = crossing.lead + law.distance(clock)
         stations.append(front[:, None] - crossing.vehicle.setback)
         speeds.append(np.broadcast_to((law.speed(clock) * moving)[:, None], stations[-1].shape))
     return Timeline(
         time=time, n_run_in=n_run_in, station=np.hstack(stations), speed=np.hstack(speeds)
     )
+
+
+def _own_start(crossing: Crossing, dt: float) -> float:
+    """Return the time at which a vehicle begins to move, a whole number of steps [s]."""
+    if isinstance(crossing.entry, StaticStart):
+        return 0.0
+    return -float(np.ceil((crossing.run_in_time - crossing.depart) / dt - 1e-9)) * dt
 
 
 def roads_under_wheels(
@@ -100,7 +108,7 @@ def roads_under_wheels(
         station, speed = timeline.station[:, columns], timeline.speed[:, columns]
         for run in range(n_runs):
             rng = run_generator(seed, crossing.route.name, run)
-            profile = _profile_of(crossing, station, float(speed.max()), timeline, rng)
+            profile = _profile_of(crossing, float(speed.max()), timeline, rng)
             z, slope = profile.at(station)
             elevation[:, columns, run] = z
             rate[:, columns, run] = speed * slope
@@ -108,11 +116,7 @@ def roads_under_wheels(
 
 
 def _profile_of(
-    crossing: Crossing,
-    station: Array,
-    speed: float,
-    timeline: Timeline,
-    rng: np.random.Generator,
+    crossing: Crossing, speed: float, timeline: Timeline, rng: np.random.Generator
 ) -> Profile:
     if isinstance(crossing.road, Profile):
         return crossing.road
@@ -125,7 +129,7 @@ def _profile_of(
             f"{0.5 / (crossing.band.n_max * speed):.3g} s; got {dt:g} s: shorten dt or "
             f"lower n_max to {limit:.3g} cycle/m"
         )
-    low, high = float(station.min()) - _MARGIN, float(station.max()) + _MARGIN
+    low, high = _road_extent(crossing, float(timeline.time[-1]))
     return synthesise(
         crossing.road,
         length=high - low,
@@ -133,6 +137,19 @@ def _profile_of(
         band=crossing.band,
         start=low,
     )
+
+
+def _road_extent(crossing: Crossing, duration: float) -> tuple[float, float]:
+    """Return the stations that a random road covers [m].
+
+    They do not depend on the time step or on other vehicles, so that every method drives
+    over the same road.
+    """
+    reach = crossing.vehicle.length + _MARGIN
+    law = crossing.route.law
+    before = float(law.speed(0.0)) * crossing.run_in_time - min(0.0, crossing.lead + _MARGIN)
+    after = max(crossing.route.length, float(law.distance(max(0.0, duration - crossing.depart))))
+    return -float(np.ceil(before + reach)), float(np.ceil(after + reach))
 
 
 def run_generator(seed: int, route_name: str, run: int) -> np.random.Generator:

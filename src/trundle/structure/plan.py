@@ -120,7 +120,7 @@ class FloorPlan:
 
     @property
     def secondary_lines(self) -> Float[Array, " lines"]:
-        """Places in x of the secondary beams [m]."""
+        """Where the secondary beams stand along x [m]."""
         if self.secondary_y is None or len(self.x_lines) < 2:
             return np.zeros(0)
         shares = np.arange(1, self.secondary_per_bay + 1) / (self.secondary_per_bay + 1)

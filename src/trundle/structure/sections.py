@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
@@ -119,7 +118,7 @@ class BeamSection:
             set_frozen(self, **{name: value if value == np.inf else positive(name, value)})
 
     @classmethod
-    def rectangle(cls, width: float, depth: float, material: Material) -> Self:
+    def rectangle(cls, width: float, depth: float, material: Material) -> BeamSection:
         """Build a solid rectangle, width along local y and depth along local z [m].
 
         Shear areas are 5/6 of the area; the torsion constant is Saint-Venant's series in
@@ -140,14 +139,14 @@ class BeamSection:
             material=material,
         )
 
-    def scaled(self, factor: float) -> Self:
+    def scaled(self, factor: float) -> BeamSection:
         """Return the share of the section that belongs to a model cut on a symmetry plane.
 
         Area, second moments, torsion constant and shear areas are all multiplied, so
         stiffness and mass both are.
         """
         factor = positive("factor", factor)
-        return type(self)(
+        return BeamSection(
             area=self.area * factor,
             inertia_y=self.inertia_y * factor,
             inertia_z=self.inertia_z * factor,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Complex, Float
 from scipy import linalg
 
 from trundle._checks import frozen_array, set_frozen
@@ -146,7 +146,7 @@ class Vehicle:
 
     def contact_force_transfer(
         self, f: Float[Array, " lines"], *, speed: float
-    ) -> Float[Array, "lines contacts"]:
+    ) -> Complex[Array, "lines contacts"]:
         """Return the complex contact forces for a unit harmonic road on rigid ground [N/m].
 
         Parameters

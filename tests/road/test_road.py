@@ -1,0 +1,245 @@
+"""Roads against ISO 8608: levels, spectra, variance, exact slope."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy import integrate
+
+from trundle.errors import InputError
+from trundle.road import (
+    CLASS_NAMES,
+    Profile,
+    RoadClass,
+    RoughnessBand,
+    class_limits,
+    synthesise,
+    temporal_psd,
+    temporal_psd_two_sided,
+)
+from trundle.signals import welch_psd
+
+
+def test_table_1():
+    """Pan, Mita and Li (2001), Table 1, in 1e-6 m3."""
+    table = {
+        "A": (8, 16, 32), "B": (32, 64, 128), "C": (128, 256, 512), "D": (512, 1024, 2048),
+        "E": (2048, 4096, 8192), "F": (8192, 16384, 32768), "G": (32768, 65536, 131072),
+        "H": (131072, 262144, 524288),
+    }  # fmt: skip
+    for name in CLASS_NAMES:
+        assert np.array(class_limits(name)) * 1e6 == pytest.approx(table[name])
+    for level, limit in zip(("lower", "geometric_mean", "upper"), table["C"], strict=True):
+        assert RoadClass("C", level=level).displacement_psd(0.1) == pytest.approx(limit * 1e-6)
+
+
+def test_both_forms_of_the_spectrum_hold_the_same_power():
+    """Gd(n) dn = Gd(Omega) dOmega; and ISO's Gd(Omega0) of class A is about 1e-6 m3."""
+    road = RoadClass("A")
+    in_n, _ = integrate.quad(road.displacement_psd, 0.05, 2.0)
+    in_angular, _ = integrate.quad(road.displacement_psd_angular, 0.1 * np.pi, 4.0 * np.pi)
+    assert in_n == pytest.approx(in_angular, rel=1e-9)
+    assert road.displacement_psd_angular(1.0) == pytest.approx(1e-6, rel=0.02)
+
+
+@pytest.mark.parametrize("derivative", [0, 1, 2])
+def test_temporal_spectra_hold_the_power_of_the_spatial_ones(derivative):
+    """Equations 2 and 3: one-sided over f, two-sided over omega, and (2 pi n V)^2d Gd over n."""
+    road, speed = RoadClass("B"), 15 / 3.6
+    low, high = 0.2, 10.0
+    one, _ = integrate.quad(
+        lambda f: temporal_psd(road, f, speed=speed, derivative=derivative), low, high
+    )
+    two, _ = integrate.quad(
+        lambda w: temporal_psd_two_sided(road, w, speed=speed, derivative=derivative),
+        2 * np.pi * low,
+        2 * np.pi * high,
+    )
+    space, _ = integrate.quad(
+        lambda n: (2 * np.pi * n * speed) ** (2 * derivative) * road.displacement_psd(n),
+        low / speed,
+        high / speed,
+    )
+    assert one == pytest.approx(space, rel=1e-8)
+    assert 2 * two == pytest.approx(space, rel=1e-8)  # both signs of omega
+    # the paper prints (2 pi f)^(2 d) Gd(n) / (4 pi V)
+    f = 3.0
+    printed = (
+        (2 * np.pi * f) ** (2 * derivative) * road.displacement_psd(f / speed) / (4 * np.pi * speed)
+    )
+    assert temporal_psd_two_sided(
+        road, -2 * np.pi * f, speed=speed, derivative=derivative
+    ) == pytest.approx(printed)
+
+
+@pytest.mark.parametrize(
+    ("name", "band", "sigma"),
+    [
+        ("A", (0.01, 10.0), 3.998e-3), ("B", (0.01, 10.0), 7.996e-3), ("C", (0.01, 10.0), 15.992e-3),
+        ("A", (0.011, 2.83), 3.806e-3), ("B", (0.011, 2.83), 7.613e-3),
+    ],
+)  # fmt: skip
+def test_variance_of_the_classes(name, band, sigma):
+    """V6: sigma = n0 sqrt(Gd(n0) (1/n1 - 1/n2)); the series has it exactly."""
+    assert np.sqrt(RoadClass(name).variance(*band)) == pytest.approx(sigma, rel=2e-4)
+    limits = RoughnessBand(n_min=band[0], n_max=band[1])
+    squares = []
+    for seed in range(20):
+        profile = synthesise(
+            RoadClass(name), length=400.0, rng=np.random.default_rng(seed), band=limits
+        )
+        squares.append(np.mean(profile.elevation**2))
+    # The series has the variance exactly over its period; the road is 99 % of that.
+    assert np.sqrt(np.mean(squares)) == pytest.approx(sigma, rel=3e-3)
+
+
+def octave_levels_in_db(
+    road: RoadClass, gaussian: bool, spacing: float, length: float
+) -> np.ndarray:
+    """Return the mean PSD of 60 roads over the class's, by octaves from 0.04 to 2.56 cycle/m."""
+    band = RoughnessBand(n_min=0.005, n_max=4.0, gaussian_amplitudes=gaussian)
+    psds = []
+    for seed in range(60):
+        profile = synthesise(
+            road, length=length, rng=np.random.default_rng(seed), band=band, spacing=spacing
+        )
+        step = profile.station[1] - profile.station[0]
+        n, psd = welch_psd(profile.elevation, 1.0 / step, resolution=0.01)
+        psds.append(psd)
+    mean = np.mean(psds, axis=0)
+    edges = 0.04 * 2.0 ** np.arange(7)
+    ratios = []
+    for low, high in pairwise(edges):
+        inside = (n >= low) & (n < high)
+        ratios.append(np.sum(mean[inside]) / np.sum(road.displacement_psd(n[inside])))
+    return 10 * np.log10(ratios)
+
+
+@pytest.mark.parametrize("gaussian", [False, True])
+@pytest.mark.parametrize(("spacing", "length"), [(0.05, 500.0), (0.02, 800.0)])
+def test_spectrum_of_the_realisations(gaussian, spacing, length):
+    """V6: Welch's PSD within 1 dB of Gd in octaves, whatever spacing and length."""
+    levels = octave_levels_in_db(RoadClass("B"), gaussian, spacing, length)
+    assert np.abs(levels).max() < 1.0
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_the_spectrum_test_would_see_a_factor_of_two(factor):
+    """Negative control: a generator with half or twice the variance is 3 dB off."""
+    wrong = RoadClass("B", level="upper" if factor == 2.0 else "lower")
+    levels = octave_levels_in_db(wrong, False, 0.05, 500.0)
+    assert np.abs(levels).max() < 1.0  # it is right for its own class ...
+    assert np.abs(levels + 10 * np.log10(factor)).min() > 1.0  # ... and wrong for the mean
+
+
+def test_amplitude_doubles_from_class_to_class():
+    """Gd quadruples from A to B, so with the same phases the road is exactly twice as rough."""
+    a, b = (synthesise(RoadClass(name), length=50.0, rng=np.random.default_rng(7)) for name in "AB")
+    np.testing.assert_allclose(b.elevation, 2 * a.elevation, rtol=1e-12)
+
+
+def test_shorter_waves_are_added_to_the_same_long_ones():
+    """A wider band with the same seed keeps the long waves, so methods share their road."""
+    narrow, wide = (
+        synthesise(
+            RoadClass("B"), length=120.0, rng=np.random.default_rng(4), band=RoughnessBand(n_max=n)
+        )
+        for n in (0.5, 3.0)
+    )
+    s = np.linspace(0.0, 120.0, 1201)
+    added = wide.at(s)[0] - narrow.at(s)[0]
+    assert added.var() == pytest.approx(RoadClass("B").variance(0.5, 3.0), rel=0.05)
+
+
+def test_slope_is_the_derivative_everywhere():
+    """At samples the slope is that of the Fourier series, between them that of the cubic."""
+    profile = synthesise(RoadClass("C"), length=60.0, rng=np.random.default_rng(1))
+    s = np.random.default_rng(2).uniform(1.0, 59.0, 200)
+    h = 1e-6
+    difference = (profile.at(s + h)[0] - profile.at(s - h)[0]) / (2 * h)
+    np.testing.assert_allclose(profile.at(s)[1], difference, atol=1e-7)
+
+
+def test_interpolation_between_samples_is_exact_enough():
+    """A road drawn with a finer step but the same waves differs by under 1e-4 of its height."""
+    band = RoughnessBand(n_max=2.0)
+    profile = synthesise(RoadClass("B"), length=80.0, rng=np.random.default_rng(3), band=band)
+    coarse = Profile(
+        station=profile.station[::2], elevation=profile.elevation[::2], slope=profile.slope[::2]
+    )
+    middle = profile.station[1:-1:2]
+    error = coarse.at(middle)[0] - profile.at(middle)[0]
+    assert np.abs(error).max() < 2e-4 * profile.elevation.std()
+
+
+def test_tyre_averaging_follows_sinc():
+    """Averaging over a length a multiplies each wave by sin(pi n a) / (pi n a)."""
+    band = {"n_min": 0.5, "n_max": 0.52}
+    point, patch = (
+        synthesise(
+            RoadClass("B"),
+            length=200.0,
+            rng=np.random.default_rng(5),
+            band=RoughnessBand(**band, contact_patch=a),
+        )
+        for a in (0.0, 0.8)
+    )
+    ratio = patch.elevation.std() / point.elevation.std()
+    assert ratio == pytest.approx(np.sinc(0.51 * 0.8), rel=0.01)
+
+
+def test_roads_do_not_repeat_and_seeds_decide():
+    first, again, other = (
+        synthesise(RoadClass("B"), length=300.0, rng=np.random.default_rng(seed))
+        for seed in (1, 1, 2)
+    )
+    assert np.array_equal(first.elevation, again.elevation)
+    assert not np.array_equal(first.elevation, other.elevation)
+    half = len(first.elevation) // 2
+    z = first.elevation - first.elevation.mean()
+    assert abs(np.corrcoef(z[:half], z[half : 2 * half])[0, 1]) < 0.8
+
+
+def test_piecewise_linear_profile_and_its_kinks():
+    """The ramp of V2: 0 to 10 mm between L/3 and L/2, level on both sides."""
+    length = 25.0
+    profile = Profile.piecewise_linear(
+        [0.0, length / 3, length / 2, length], [0.0, 0.0, 0.01, 0.01]
+    )
+    z, slope = profile.at([-5.0, 4.0, length * 5 / 12, 20.0, 99.0])
+    assert z == pytest.approx([0.0, 0.0, 0.005, 0.01, 0.01])
+    assert slope == pytest.approx([0.0, 0.0, 0.01 / (length / 6), 0.0, 0.0])
+
+
+def test_measured_samples_come_back():
+    s = np.linspace(0.0, 10.0, 41)
+    profile = Profile.from_samples(s, np.sin(s))
+    z, slope = profile.at([2.5, 5.05])
+    assert z == pytest.approx(np.sin([2.5, 5.05]), abs=1e-5)
+    assert slope == pytest.approx(np.cos([2.5, 5.05]), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: RoadClass("Z"), "road class must be one of"),
+        (lambda: RoadClass("B", waviness=20.0), r"waviness must be in \[1, 4\]; got 20"),
+        (lambda: RoughnessBand(n_min=2.0, n_max=1.0), "n_max must be above"),
+        (lambda: Profile.from_samples([0, 1, 2], [0, 1, 2]), "at least 4 points"),
+        (
+            lambda: Profile(
+                station=np.array([0.0, -1.0]), elevation=np.zeros(2), slope=np.zeros(2)
+            ),
+            "must not fall",
+        ),
+        (
+            lambda: synthesise(
+                RoadClass("B"), length=10.0, rng=np.random.default_rng(0), spacing=1.0
+            ),
+            "spacing must be at most",
+        ),
+    ],
+)
+def test_bad_roads_are_refused(make, match):
+    with pytest.raises(InputError, match=match):
+        make()

@@ -1,0 +1,111 @@
+"""The storey builder against sums by hand, symmetry, and an independent prototype."""
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import spsolve
+
+from models import small_floor, small_plan
+from trundle.dynamics import natural_modes
+from trundle.errors import InputError
+from trundle.structure import Rectangle, build_floor, reference_unit
+
+
+def test_mass_of_the_reference_unit_by_hand():
+    """Slab, load, beams over the whole plan, half beams on the mirror lines, columns.
+
+    A column of n = 4 elements with a fixed far end lends 1 - 2 / (3 n) of its mass to the
+    motion (consistent mass). The prototype's figure is 6798 t.
+    """
+    slab = 52 * 83.5 * (0.20 * 2450 + 500)
+    beams = 2450 * (5 * 52 * 1.0 * 1.8 + 4 * 83.5 * 0.6 * 1.5 + 4 * 83.5 * 0.3 * 0.7)
+    columns = 2450 * 0.8 * 0.8 * 8.5 * 2 * 5 * 4 * (1 - 2 / 12)
+    floor = reference_unit(mesh_size=3.5)
+    assert floor.moving_mass() == pytest.approx(slab + beams + columns, rel=1e-10)
+    assert floor.moving_mass() == pytest.approx(6798e3, rel=1e-4)
+
+
+def test_self_weight_of_the_reference_unit_rests_on_its_columns():
+    """The columns' axial forces balance the weight; each shortens by N h / E A or less."""
+    floor = reference_unit(mesh_size=3.5)
+    weight = 9.81 * (floor.mass @ floor.rigid_vector(2))
+    u = spsolve(floor.stiffness, -weight)
+    deflection = np.where(floor.dof_index[:, 2] >= 0, u[floor.dof_index[:, 2]], 0.0)
+    assert u @ (floor.stiffness @ u) == pytest.approx(-(u @ weight), rel=1e-9)
+    # the large bays of 21 m sag by some centimetres at most, and nothing rises
+    assert -0.05 < deflection.min() < -0.005
+    assert deflection.max() < 1e-4
+
+
+@pytest.mark.slow
+def test_frequencies_of_the_reference_unit():
+    """An independent prototype (MITC4, Bernoulli-Euler beams), first twelve at a 1 m mesh.
+
+    Timoshenko beams are softer, so ours lie a little below; 3 % is the margin agreed.
+    """
+    prototype = [3.65, 3.70, 3.83, 3.94, 4.16, 4.24, 4.24, 4.26, 4.33, 4.33, 4.35, 4.38]
+    floor = reference_unit(mesh_size=1.0)
+    f = natural_modes(floor.mass, floor.stiffness, f_max=6.5).frequencies
+    np.testing.assert_allclose(f[:12], prototype, rtol=0.03)
+    assert f[12] == pytest.approx(6.23, rel=0.03)
+    assert np.all(f[:12] <= np.array(prototype))
+
+
+def test_a_half_model_has_the_symmetric_modes_of_the_whole():
+    """Cutting on a plane of symmetry keeps the symmetric modes exactly."""
+    lines = {"x_lines": np.array([0.0, 6.0, 12.0]), "x_extent": (0.0, 12.0)}
+    whole = small_floor(mesh_size=1.0, **lines)
+    half = small_floor(
+        mesh_size=1.0,
+        x_lines=np.array([6.0, 12.0]),
+        x_extent=(6.0, 12.0),
+        edges={"x_min": "symmetry"},
+    )
+    f_half = natural_modes(half.mass, half.stiffness, f_max=40.0).frequencies
+    f_whole = natural_modes(whole.mass, whole.stiffness, f_max=40.0).frequencies
+    assert len(f_half) >= 4
+    nearest = np.abs(f_half[:, None] - f_whole).min(axis=1)
+    assert nearest.max() < 1e-6 * f_whole.max()
+    assert half.moving_mass() == pytest.approx(whole.moving_mass() / 2, rel=1e-12)
+
+
+def test_mesh_lines_fall_on_every_beam_and_column():
+    floor = small_floor(mesh_size=1.1, secondary_y=Rectangle(width=0.2, depth=0.4))
+    x = np.unique(floor.nodes[: len(floor.nodes) - 8 * 6, 0].round(9))
+    assert {0.0, 3.0, 6.0, 9.0, 12.0} <= set(x.tolist())
+    assert np.diff(x).max() <= 1.1 + 1e-9
+
+
+def test_beams_below_the_slab_are_stiffer_than_beams_in_its_plane():
+    """T-action: eccentric beams sag much less under the same weight."""
+    sags = []
+    for eccentric in (True, False):
+        floor = small_floor(eccentric_beams=eccentric)
+        u = spsolve(floor.stiffness, floor.mass @ floor.rigid_vector(2))
+        sags.append(u[floor.dof_index[:50, 2]].max())
+    assert sags[1] > 1.4 * sags[0]
+
+
+def test_equal_floors_share_a_content_hash():
+    assert small_floor().content_hash == small_floor().content_hash
+    other = small_floor(storey_below=4.1)
+    assert small_floor().content_hash != other.content_hash
+
+
+@pytest.mark.parametrize(
+    ("changes", "match"),
+    [
+        ({"x_lines": np.array([0.0, 6.0, 6.0])}, "rise without repeats"),
+        ({"x_extent": (1.0, 12.0)}, "must lie inside"),
+        ({"x_extent": (12.0, 0.0)}, "must rise"),
+        ({"edges": {"x_mid": "free"}}, "edge must be one of"),
+        ({"secondary_per_bay": 0}, "whole number"),
+    ],
+)
+def test_bad_plans_are_refused(changes, match):
+    with pytest.raises(InputError, match=match):
+        small_plan(**changes)
+
+
+def test_a_bad_mesh_size_is_refused():
+    with pytest.raises(InputError, match="mesh_size must be greater than 0"):
+        build_floor(small_plan(), mesh_size=-1.0)

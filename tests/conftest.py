@@ -7,4 +7,8 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 from jaxtyping import install_import_hook  # noqa: E402  (threads are set before numpy loads)
 
-install_import_hook("trundle", "shape_checker.check")
+NUMERIC = (
+    "dynamics", "signals", "road", "vehicle", "structure", "route", "simulate", "response",
+    "criteria",
+)  # fmt: skip
+install_import_hook([f"trundle.{name}" for name in NUMERIC], "shape_checker.check")

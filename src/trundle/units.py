@@ -52,6 +52,13 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
 _QUANTITY = re.compile(
     r"^\s*(?P<number>[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d{1,3})?)\s*(?P<unit>(1/)?[^\d\s.+-].{0,30})?$"
 )
+# Without dimension to pint, so it would let an angle or a decibel pass for a count.
+_SECONDS = {"second", "millisecond", "microsecond", "minute", "hour"}
+_COUNTED = {
+    "frequency": {"hertz", "kilohertz", "megahertz", "cycle", *_SECONDS},
+    "rate": {"hertz", "kilohertz", *_SECONDS},
+    "ratio": {"percent", "permille", "ppm"},
+}
 _CYCLIC = ("frequency", "wavenumber")
 _UNIT_CHARACTERS = re.compile(r"^[A-Za-zµμ%/*^()·\s\d²³-]*$")
 _POWER = re.compile(r"(?<=[A-Za-zµμ])([23])\b")
@@ -114,7 +121,13 @@ def _factor(unit: str, unit_si: str, dimension: str, example: str) -> float:
     spelled = unit.replace("·", "*").replace("²", "**2").replace("³", "**3").replace("^", "**")
     spelled = _POWER.sub(r"**\1", spelled)
     try:
-        factor = registry.Quantity(1.0, registry.parse_units(spelled)).to(unit_si).magnitude
+        units = registry.parse_units(spelled)
+        allowed = _COUNTED.get(dimension)
+        if allowed is not None and not {str(name) for name in units._units} <= allowed:
+            raise InputError(f"unit {unit!r} is not one of {dimension}; write such as {example!r}")
+        factor = registry.Quantity(1.0, units).to(unit_si).magnitude
+    except InputError:
+        raise
     except pint.DimensionalityError:
         raise InputError(
             f"unit {unit!r} is not one of {dimension}; write such as {example!r}"

@@ -11,11 +11,9 @@ from trundle.simulate import Runs
 def sine_runs(f: float, amplitude: float, *, dt: float = 0.0025, n_runs: int = 3) -> Runs:
     """A velocity sine [m/s] at one point for 20 s, the runs 1, 2, 3 ... times as strong."""
     t = dt * np.arange(round(20.0 / dt))
-    v = (
-        amplitude
-        * np.sin(2 * np.pi * f * t)[None, :, None]
-        * np.arange(1, n_runs + 1)[:, None, None]
-    )
+    ease = np.clip(np.minimum(t, 20 - t) / 4, 0, 1)  # a sudden start is a broadband event
+    sine = ease**2 * (3 - 2 * ease) * np.sin(2 * np.pi * f * t)
+    v = amplitude * np.arange(1, n_runs + 1)[:, None, None] * sine[None, :, None]
     a = 2 * np.pi * f * v
     return Runs(
         time=t, displacement=v, velocity=v, acceleration=a, contact_forces=np.zeros((n_runs, len(t), 1)),

@@ -112,6 +112,28 @@ def test_a_beam_carries_wheels_where_there_are_no_shells():
     np.testing.assert_allclose(rows.matrix(rows.slope) @ u, 10 - 2 * x, rtol=1e-9)
 
 
+def test_places_in_a_large_element_beside_small_ones_are_found():
+    """A graded mesh: the nearest element centres are those of the small neighbours."""
+    x = np.concatenate([[0.0, 3.0], 3.0 + 0.2 * np.arange(1, 16)])
+    y = np.concatenate([[0.0, 3.0], 3.0 + 0.2 * np.arange(1, 16)])
+    grid = np.arange(len(x) * len(y)).reshape(len(y), len(x))
+    corners = [grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]]
+    nodes = np.column_stack([np.tile(x, len(y)), np.repeat(y, len(x)), np.zeros(grid.size)])
+    floor = Floor(
+        nodes=nodes,
+        fixed=np.zeros((grid.size, 6), dtype=bool),
+        shells=(
+            ShellGroup(
+                elements=np.stack([c.ravel() for c in corners], axis=1),
+                section=ShellSection(thickness=0.2, material=CONCRETE),
+            ),
+        ),
+    )
+    u = field(floor, lambda x, y: x + 2 * y, lambda x, y: 1.0, lambda x, y: 2.0)
+    rows = contact_rows(floor, np.array([[2.9, 2.9]]), ALONG_X, shape=Hermite())
+    assert rows.matrix(rows.value) @ u == pytest.approx([2.9 + 5.8])
+
+
 @pytest.mark.parametrize("place", [[-0.1, 1.0], [12.2, 3.0], [6.0, 6.5], [np.inf, 0.0]])
 def test_places_off_the_floor_are_refused(place):
     with pytest.raises((InputError, ValueError), match=r"not on the floor|finite"):

@@ -5,6 +5,7 @@ import pytest
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
+from models import simple_beam
 from trundle.dynamics import natural_modes
 from trundle.errors import InputError
 from trundle.structure import (
@@ -14,6 +15,7 @@ from trundle.structure import (
     Floor,
     FloorPlan,
     Material,
+    PointMasses,
     ShellGroup,
     ShellSection,
     SpringGroup,
@@ -326,6 +328,36 @@ def test_springs_to_the_ground_and_between_nodes():
     bending = 3 * STEEL.elastic_modulus * section.inertia_z
     flexibility = 1 / bending + 1 / (STEEL.shear_modulus * 5 / 6 * 0.01)
     assert u == pytest.approx(1e6 / (1e10 + 1 / flexibility), rel=1e-9)
+
+
+def test_a_tuned_mass_on_a_spring_is_part_of_the_floor():
+    """A damper mass hung on a spring splits a beam's mode: two frequencies by hand.
+
+    One-mode beam (modal mass m L / 2) with a mass on a spring: the 2 x 2 eigenproblem, within
+    the small share of the beam's other modes.
+    """
+    length, line_mass, rigidity = 10.0, 1000.0, 3.7e7
+    beam = simple_beam(length=length, rigidity=rigidity, line_mass=line_mass, n_elements=20)
+    omega = (np.pi / length) ** 2 * np.sqrt(rigidity / line_mass)
+    mass, stiffness = 100.0, 100.0 * omega**2
+    nodes = np.vstack([beam.nodes, [[length / 2, 0.0, -1.0]]])
+    fixed = np.vstack([beam.fixed, [[True, True, False, True, True, True]]])
+    floor = Floor(
+        nodes=nodes,
+        fixed=fixed,
+        beams=beam.beams,
+        springs=(
+            SpringGroup(
+                elements=np.array([[10, 21]]), stiffness=np.array([0, 0, stiffness, 0, 0, 0.0])
+            ),
+        ),
+        masses=(PointMasses(nodes=np.array([21]), mass=mass),),
+    )
+    modal = line_mass * length / 2
+    k = np.array([[modal * omega**2 + stiffness, -stiffness], [-stiffness, stiffness]])
+    by_hand = np.sqrt(np.linalg.eigvals(k / np.array([[modal], [mass]]))) / (2 * np.pi)
+    computed = natural_modes(floor.mass, floor.stiffness, f_max=20.0).frequencies[:2]
+    np.testing.assert_allclose(computed, np.sort(by_hand.real), rtol=2e-3)
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,17 @@ def test_beams_below_the_slab_are_stiffer_than_beams_in_its_plane():
     assert sags[1] > 1.4 * sags[0]
 
 
+def test_columns_at_a_pinned_edge_are_not_held_along_their_length():
+    """Far end fixed, head pinned: two columns of one storey give 2 x 4 E I / L in rotation."""
+    floor = small_floor(
+        beams_x=None, beams_y=None, edges={"x_min": "pinned"}, storey_above=0.0, storey_below=4.0
+    )
+    bases = floor.nodes[:, 2] <= -4.0 + 1e-9
+    inner = (floor.nodes[:, 2] < -1e-6) & ~bases
+    assert floor.fixed[bases].all()
+    assert not floor.fixed[inner].any()
+
+
 def test_equal_floors_share_a_content_hash():
     assert small_floor().content_hash == small_floor().content_hash
     other = small_floor(storey_below=4.1)

@@ -116,6 +116,11 @@ def main() -> None:
     signal.signal(signal.SIGTERM, _interrupt)
     try:
         app()
+    except SystemExit as stop:
+        # typer turns an interrupt into its exit code, and says nothing
+        if stop.code == INTERRUPTED:
+            _say_interrupted()
+        raise
     except InputError as error:
         print(f"error: {error}", file=sys.stderr)
         sys.exit(BAD_INPUT)
@@ -123,10 +128,14 @@ def main() -> None:
         print(f"error: the computation failed: {error}", file=sys.stderr)
         sys.exit(FAILED)
     except KeyboardInterrupt:
-        print("interrupted: nothing was written", file=sys.stderr)
+        _say_interrupted()
         sys.exit(INTERRUPTED)
     except BrokenPipeError:
         sys.exit(FAILED)
+
+
+def _say_interrupted() -> None:
+    print("interrupted: no results were written, and earlier ones still stand", file=sys.stderr)
 
 
 def _interrupt(number: int, frame: object) -> None:

@@ -14,6 +14,8 @@ from trundle.study.build import load_study
 from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
 from trundle.vehicle import GRAVITY, VEHICLES
 
+_HIGHEST = 2e3  # Hz
+
 __all__ = ["check", "criteria", "modes", "new", "vehicles"]
 
 
@@ -35,12 +37,12 @@ def check(path: Path) -> None:
 
 def new(path: Path) -> None:
     """Write the template study."""
-    if path.exists():
-        raise InputError(f"{path}: this file exists; choose another name")
-    if not path.absolute().parent.is_dir():
-        raise InputError(f"{path}: there is no folder {path.absolute().parent}; make it first")
     template = resources.files("trundle.study").joinpath("template.toml").read_text("utf-8")
     try:
+        if path.exists():
+            raise InputError(f"{path}: this file exists; choose another name")
+        if not path.absolute().parent.is_dir():
+            raise InputError(f"{path}: there is no folder {path.absolute().parent}; make it first")
         path.write_text(template, encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from None
@@ -130,6 +132,6 @@ def _frequency(text: str) -> float:
         value = to_si(text, "frequency")
     except InputError as error:
         raise InputError(f"--f-max {text!r}: {error}") from None
-    if value <= 0.0:
-        raise InputError(f"--f-max {text!r}: must be greater than 0")
+    if not 0.0 < value <= _HIGHEST:
+        raise InputError(f"--f-max {text!r}: must be greater than 0, and at most {_HIGHEST:g} Hz")
     return value

@@ -18,10 +18,11 @@ def run(path: Path, out: Path) -> None:
     """Run a study and write its results folder."""
     study = load_study(path)
     check_target(out)
+    place = out.resolve()
     with progress_bar() as tell, new_results_folder(out) as folder:
         result = run_study(study, report=lambda what, share: tell(what, 0.94 * share))
         tell("writing results", 0.94)
         write_results(result, folder)
         write_report(result, folder, tell=lambda what, share: tell(what, 0.95 + 0.05 * share))
     print_result(result)
-    print(f"\nreport: {(out / 'report.html').resolve()}")
+    print(f"\nreport: {place / 'report.html'}")

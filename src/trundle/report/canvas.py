@@ -17,6 +17,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 
 STYLE: dict[Any, Any] = {
     "font.size": 9.0,
+    "text.parse_math": False,  # names come from outside and may hold a dollar sign
     "axes.titlesize": 10.0,
     "axes.grid": True,
     "grid.color": "#D9D9D9",

@@ -35,7 +35,7 @@ def roughness_figure() -> Figure:
         yscale="log",
         xlim=(0.01, 10.0),
         xlabel="spatial frequency n [cycle/m]",
-        ylabel="displacement PSD $G_d(n)$ [m$^3$]",
+        ylabel="displacement PSD Gd(n) [m³]",
     )
     return figure
 

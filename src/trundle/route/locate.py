@@ -18,6 +18,7 @@ __all__ = ["Deck", "deck_of"]
 _XI = np.array([-1.0, 1.0, 1.0, -1.0])
 _ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 _CANDIDATES = 12
+_BLOCK = 20_000  # places looked up at once, to bound memory
 _EDGE = 1e-6  # share of an element by which a place may lie outside it
 
 
@@ -59,6 +60,10 @@ class Deck:
         InputError
             A place that no element lies under.
         """
+        if len(places) > _BLOCK:
+            blocks = [self.find(places[i : i + _BLOCK]) for i in range(0, len(places), _BLOCK)]
+            found, local = zip(*blocks, strict=True)
+            return np.concatenate(found), np.concatenate(local)
         n_near = min(_CANDIDATES, len(self.elements))
         _, near = self._tree.query(places, k=n_near)
         near = np.asarray(near).reshape(len(places), n_near)
@@ -69,6 +74,11 @@ class Deck:
         best = overshoot.argmin(axis=1)
         rows = np.arange(len(places))
         worst = overshoot[rows, best]
+        found, local = near[rows, best], local[rows, best]
+        lost = np.flatnonzero(worst > _EDGE)
+        if lost.size:
+            # On a graded mesh the element under a place can have a centre far from it.
+            found[lost], local[lost], worst[lost] = self._search_all(places[lost])
         if np.any(worst > _EDGE):
             bad = int(worst.argmax())
             low, high = self.extent
@@ -76,7 +86,23 @@ class Deck:
                 f"point ({places[bad, 0]:g}, {places[bad, 1]:g}) m is not on the floor, which "
                 f"covers x {low[0]:g} to {high[0]:g} m and y {low[1]:g} to {high[1]:g} m"
             )
-        return near[rows, best], np.clip(local[rows, best], -1.0, 1.0)
+        return found, np.clip(local, -1.0, 1.0)
+
+    def _search_all(self, places: Array) -> tuple[Array, Array, Array]:
+        """Return element, local place and overshoot among all elements that could hold it."""
+        low, high = self.corners.min(axis=1) - _EDGE, self.corners.max(axis=1) + _EDGE
+        inverse = self._on_line if self.is_line else self._on_quad
+        found = np.zeros(len(places), dtype=np.intp)
+        local = np.full((len(places), 2), np.inf)
+        overshoot = np.full(len(places), np.inf)
+        for i, place in enumerate(places):
+            near = np.flatnonzero(((low <= place) & (place <= high)).all(axis=1))
+            if near.size:
+                tried = inverse(np.broadcast_to(place, (len(near), 2)), near)
+                outside = np.abs(tried).max(axis=1) - 1.0
+                best = int(outside.argmin())
+                found[i], local[i], overshoot[i] = near[best], tried[best], outside[best]
+        return found, local, overshoot
 
     def _on_quad(self, places: Array, elements: Array) -> Array:
         """Invert the bilinear map by Newton's method; exact in one step on a parallelogram."""

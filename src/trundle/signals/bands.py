@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 from scipy import signal
 
 from trundle._checks import positive
@@ -55,7 +55,7 @@ def band_edges(mid_band: Float[Array, " bands"]) -> Float[Array, "bands 2"]:
 
 def usable_bands(
     mid_band: Float[Array, " bands"], sampling_frequency: float
-) -> Float[Array, " bands"]:
+) -> Bool[Array, " bands"]:
     """Return True for bands that the sampling frequency can resolve within class 1."""
     return mid_band <= sampling_frequency / _SAMPLES * (1.0 + 1e-9)
 

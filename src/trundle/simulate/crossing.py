@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from trundle._checks import finite, non_negative, set_frozen
+from trundle._checks import non_negative, set_frozen
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
@@ -43,7 +43,8 @@ class Crossing:
         Distance driven on rigid rough ground before time 0 [m]; None lets the slowest
         motion of the vehicle decay to 5 %, 0 starts it at rest.
     depart : float
-        Time at which the front axle is at the entry's start [s].
+        Time at which the front axle is at the entry's start [s], 0 or more: the floor is at
+        rest at time 0.
     """
 
     vehicle: Vehicle
@@ -56,7 +57,7 @@ class Crossing:
 
     def __post_init__(self) -> None:
         """Check times and distances."""
-        set_frozen(self, depart=finite("depart", self.depart))
+        set_frozen(self, depart=non_negative("depart", self.depart))
         if self.run_in is not None:
             set_frozen(self, run_in=non_negative("run_in", self.run_in))
 

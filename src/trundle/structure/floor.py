@@ -206,7 +206,7 @@ class Floor:
     @cached_property
     def dof_index(self) -> Int[Array, "nodes 6"]:
         """Row of each dof in the matrices, -1 where it is held or carries no element."""
-        free = ~self.fixed & self._used[:, None]
+        free = ~self.fixed & self._carried
         index = np.full(self.fixed.shape, -1, dtype=np.intp)
         index[free] = np.arange(np.count_nonzero(free))
         index.setflags(write=False)
@@ -277,11 +277,17 @@ class Floor:
         return float(ones @ (self.mass @ ones))
 
     @cached_property
-    def _used(self) -> Bool[Array, " nodes"]:
-        used = np.zeros(len(self.nodes), dtype=bool)
+    def _carried(self) -> Bool[Array, "nodes 6"]:
+        """True for dofs that any element gives a stiffness or a mass."""
+        carried = np.zeros((len(self.nodes), 6), dtype=bool)
         for group in (*self.shells, *self.beams):
-            used[group.elements.ravel()] = True
-        return used
+            carried[group.elements.ravel()] = True
+        for group in self.springs:
+            ends = group.elements[group.elements != GROUND]
+            carried[ends] |= group.stiffness > 0.0
+        for group in self.masses:
+            carried[group.nodes, :3] = True
+        return carried
 
     def _assemble(self, blocks: list[tuple[Array, Array]]) -> SparseMatrix:
         rows, columns, values = [], [], []

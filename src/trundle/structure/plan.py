@@ -25,6 +25,7 @@ EDGES = ("x_min", "x_max", "y_min", "y_max")
 
 _COLUMN_ELEMENTS = 4
 _SNAP = 1e-6  # m
+_CLOSEST = 0.05  # m between column lines
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,8 +106,11 @@ class FloorPlan:
             low, high = (float(value) for value in getattr(self, f"{axis}_extent"))
             if high <= low:
                 raise InputError(f"{axis}_extent must rise; got {low:g} to {high:g} m")
-            if np.any(np.diff(lines) <= 0.0):
-                raise InputError(f"{axis}_lines must rise without repeats; got {lines.tolist()} m")
+            if np.any(np.diff(lines) < _CLOSEST):
+                raise InputError(
+                    f"{axis}_lines must rise without repeats, {_CLOSEST:g} m or more apart; "
+                    f"got {lines.tolist()} m"
+                )
             if lines.size and (lines[0] < low - _SNAP or lines[-1] > high + _SNAP):
                 raise InputError(
                     f"{axis}_lines must lie inside {axis}_extent {low:g} to {high:g} m; "
@@ -156,10 +160,13 @@ def build_floor(plan: FloorPlan, *, mesh_size: float) -> Floor:
         [np.tile(x, len(y)), np.repeat(y, len(x)), np.zeros(len(x) * len(y))]
     )
     fixed = np.zeros((len(slab_nodes), 6), dtype=bool)
+    mirrored = np.zeros_like(fixed)
     for edge, kind in plan.edges.items():
         _hold_edge(fixed, _edge_nodes(grid, edge), edge, kind)
+        if kind == "symmetry":
+            _hold_edge(mirrored, _edge_nodes(grid, edge), edge, kind)
     beams = _beams(plan, x, y, grid)
-    columns, column_nodes, column_fixed = _columns(plan, x, y, grid, fixed)
+    columns, column_nodes, column_fixed = _columns(plan, x, y, grid, mirrored)
     corners = [grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]]
     elements = np.stack([corner.ravel() for corner in corners], axis=1)
     return Floor(
@@ -252,7 +259,7 @@ def _on_mirror(plan: FloorPlan, axis: str, station: float) -> bool:
 
 
 def _columns(
-    plan: FloorPlan, x: Array, y: Array, grid: Array, slab_fixed: Array
+    plan: FloorPlan, x: Array, y: Array, grid: Array, mirrored: Array
 ) -> tuple[list[BeamGroup], Array, Array]:
     nodes, fixed, groups = [np.zeros((0, 3))], [np.zeros((0, 6), dtype=bool)], []
     next_node = grid.size
@@ -270,7 +277,7 @@ def _columns(
                     np.column_stack([np.full_like(z, x_station), np.full_like(z, y_station), z])
                 )
                 # A column on a mirror plane is held by it along its whole length.
-                held = np.tile(slab_fixed[head], (_COLUMN_ELEMENTS, 1))
+                held = np.tile(mirrored[head], (_COLUMN_ELEMENTS, 1))
                 held[-1] = True
                 fixed.append(held)
                 groups.append((np.column_stack([np.r_[head, new[:-1]], new]), mirror))

@@ -14,7 +14,7 @@ from trundle.study.read import StudyFile
 
 __all__ = ["relation_problems"]
 
-_MAX_STEPS = 2_000_000
+_MAX_STEPS = 1_000_000
 _MAX_HISTORY = 4e9  # bytes of histories held at once for one cell
 _EDGE = 1e-6  # m
 _TOP = 80.0  # Hz: bands are assessed up to here
@@ -33,9 +33,10 @@ def relation_problems(
     found = list(_references(file))
     if plan is not None:
         found += _places(file, plan)
+        found += _supports(plan)
     found += _time_steps(file, methods)
-    if band is not None and not follows_dt:
-        found += _roughness(file, drives, methods, band)
+    if band is not None:
+        found += _roughness(drives, methods, band, follows_dt=follows_dt)
     found += _sizes(file, drives, methods)
     found += _entries(drives, methods)
     return found
@@ -61,6 +62,13 @@ def _references(file: StudyFile) -> Iterator[Problem]:
             )
     criteria = file.tables.get("criteria")
     if criteria is not None:
+        for name in sorted({c for c in criteria.curves if criteria.curves.count(c) > 1}):
+            yield Problem(
+                place="criteria.curves",
+                value=f"{name!r} {criteria.curves.count(name)} times",
+                rule="each curve is held against once",
+                remedy="name it once",
+            )
         yield from _refer("criteria.method", criteria.method, names, "method")
     printed = {"printed": ("case", "road", "method"), "printed_bound": ("road", "method")}
     for kind, keys in printed.items():
@@ -154,23 +162,50 @@ def _assessed_step(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterat
         )
 
 
+def _supports(plan: FloorPlan) -> Iterator[Problem]:
+    storeys = plan.storey_below > 0.0 or plan.storey_above > 0.0
+    if (plan.column is not None) != storeys:
+        yield Problem(
+            place="floor.column" if plan.column else "floor.storey_below",
+            value="columns without a storey" if plan.column else "a storey without columns",
+            rule="columns need storey_below or storey_above, and storeys need a column",
+            remedy="give both, or neither",
+        )
+    elif plan.column is None and not {"pinned", "clamped"} & set(plan.edges.values()):
+        yield Problem(
+            place="floor",
+            value="no columns, and no pinned or clamped edge",
+            rule="nothing holds this floor: it could move without strain",
+            remedy="add column and storey_below, or a pinned edge",
+        )
+
+
 def _roughness(
-    file: StudyFile,
     drives: Mapping[str, Drive],
     methods: Mapping[str, MethodPlan],
     band: RoughnessBand,
+    *,
+    follows_dt: bool,
 ) -> Iterator[Problem]:
-    del file
     for name, drive in drives.items():
         speed = float(drive.route.law.speed(0.0))
         for method in methods.values():
             dt = method.interaction.integration.dt
-            if band.n_max * speed * dt > 0.5 * (1 + 1e-9):
+            limit = 0.5 / (speed * dt)
+            if follows_dt and limit <= band.n_min:
+                yield Problem(
+                    place=f"method {method.name!r}.dt",
+                    value=f"{1e3 * dt:g} ms",
+                    rule=f"at {3.6 * speed:g} km/h on route {name!r} this step follows waves to "
+                    f"{limit:.3g} 1/m only, and the road's begin at {band.n_min:g} 1/m",
+                    remedy="shorten dt, or lower n_min or the speed",
+                )
+            elif not follows_dt and band.n_max > limit * (1 + 1e-9):
                 yield Problem(
                     place="roughness.n_max",
                     value=f"{band.n_max:g} 1/m",
                     rule=f"method {method.name!r} on route {name!r} can follow waves to "
-                    f"{0.5 / (speed * dt):.3g} 1/m (dt = {1e3 * dt:g} ms)",
+                    f"{limit:.3g} 1/m (dt = {1e3 * dt:g} ms)",
                     remedy="shorten dt, lower n_max, or set n_max_follows_dt = true",
                 )
 
@@ -181,7 +216,9 @@ def _sizes(
     if file.general is None:
         return
     contacts = sum(drive.vehicle.n_contacts for drive in drives.values())
-    readings = 3 * max(1, len(file.items("point"))) + 3 * max(1, contacts)
+    # Per step: readings and road of every run, and the contact operator's rows.
+    per_run = 8 * (6 * max(1, len(file.items("point"))) + 4 * max(1, contacts))
+    per_step = per_run * file.general.runs + 1200 * max(1, contacts)
     for method in methods.values():
         steps = file.general.duration / method.interaction.integration.dt
         if steps > _MAX_STEPS:
@@ -192,8 +229,8 @@ def _sizes(
                 f"the limit is {_MAX_STEPS}",
                 remedy="shorten the duration, or lengthen dt",
             )
-        elif steps * readings * file.general.runs * 8 > _MAX_HISTORY:
-            most = int(_MAX_HISTORY / (8 * steps * readings))
+        elif steps * per_step > _MAX_HISTORY:
+            most = max(1, int((_MAX_HISTORY / steps - 1200 * contacts) / per_run))
             yield Problem(
                 place="runs",
                 value=str(file.general.runs),

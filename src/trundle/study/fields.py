@@ -5,22 +5,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any, TypeAlias
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Strict
 from pydantic_core import PydanticCustomError
 
 from trundle.errors import InputError
-from trundle.units import to_si
+from trundle.units import DIMENSIONS, to_si
 
 __all__ = [
     "Acceleration",
     "AreaDensity",
     "DampingCoefficient",
     "Density",
+    "Flag",
     "Frequency",
     "Length",
+    "Line",
     "Mass",
     "Name",
     "NonNegativeLength",
+    "Number",
     "Place",
     "PositiveLength",
     "Pressure",
@@ -32,6 +35,7 @@ __all__ = [
     "Stiffness",
     "Time",
     "Wavenumber",
+    "Whole",
 ]
 
 
@@ -41,12 +45,41 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
 
+# What no vehicle, road or floor exceeds: a value beyond is a slip of the unit or the key.
+_LARGEST = {
+    "length": 1e4,
+    "time": 1e6,
+    "speed": 150.0,
+    "frequency": 2e3,
+    "rate": 1e4,
+    "wavenumber": 100.0,
+    "mass": 1e7,
+    "area density": 1e5,
+    "density": 3e4,
+    "pressure": 1e13,
+    "stiffness": 1e13,
+    "damping coefficient": 1e11,
+    "moment of inertia": 1e10,
+    "acceleration": 1e4,
+    "ratio": 1e3,
+}
+_SMALLEST = {"speed": 1e-10, "pressure": 1e5, "wavenumber": 1e-4}
+
+
 def _quantity(dimension: str) -> BeforeValidator:
+    unit = DIMENSIONS[dimension][0].replace("**", "")
+    largest, smallest = _LARGEST[dimension], _SMALLEST.get(dimension, 0.0)
+
     def read(value: Any) -> float:
         try:
-            return to_si(value, dimension)
+            number = to_si(value, dimension)
         except InputError as error:
             raise PydanticCustomError("quantity", "{rule}", {"rule": str(error)}) from None
+        if abs(number) > largest or 0.0 < abs(number) < smallest:
+            low = f"{smallest:g} to " if smallest else "up to "
+            rule = f"a {dimension} is {low}{largest:g} {unit}; this one is {number:g} {unit}"
+            raise PydanticCustomError("quantity", "{rule}", {"rule": rule})
+        return number
 
     return BeforeValidator(read)
 
@@ -64,15 +97,30 @@ _POSITIVE = _rule(lambda value: value > 0.0, "must be greater than 0")
 _NON_NEGATIVE = _rule(lambda value: value >= 0.0, "must be 0 or more")
 
 
-def _check_name(value: str) -> str:
-    if not value.strip() or len(value) > 60:
-        raise PydanticCustomError("rule", "{rule}", {"rule": "must be 1 to 60 characters"})
-    if any(ord(letter) < 32 for letter in value) or "/" in value:
-        rule = "must be plain text on one line, without '/'"
+def _check_line(value: str) -> str:
+    if not value.strip() or value != value.strip():
+        rule = "must not be blank, nor begin or end with a space"
+        raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+    if not value.isprintable():
+        rule = "must be plain text on one line, without control characters"
         raise PydanticCustomError("rule", "{rule}", {"rule": rule})
     return value
 
 
+def _check_name(value: str) -> str:
+    _check_line(value)
+    if len(value) > 60:
+        raise PydanticCustomError("rule", "{rule}", {"rule": "must be at most 60 characters"})
+    if value.startswith(".") or "/" in value or "\\" in value:
+        rule = "must be usable in a path: without '/' and '\\', and not beginning with '.'"
+        raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+    return value
+
+
+Flag: TypeAlias = Annotated[bool, Strict()]
+Whole: TypeAlias = Annotated[int, Strict()]
+Number: TypeAlias = Annotated[float, Strict()]
+Line: TypeAlias = Annotated[str, Strict(), AfterValidator(_check_line)]
 Name: TypeAlias = Annotated[str, AfterValidator(_check_name)]
 Length: TypeAlias = Annotated[float, _quantity("length")]
 PositiveLength: TypeAlias = Annotated[float, _quantity("length"), _POSITIVE]

@@ -96,7 +96,7 @@ def read_study(path: Path) -> tuple[StudyFile, list[Problem]]:
     StudyError
         A file that cannot be read as TOML text at all.
     """
-    return read_text(_text_of(path), str(path))
+    return read_text(_text_of(path), str(path).encode("utf-8", "replace").decode())
 
 
 def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
@@ -134,7 +134,7 @@ def _declared(data: Mapping[str, Any]) -> dict[str, set[str]]:
     for kind in _LISTS:
         entries = data.get(kind, [])
         tables = [e for e in entries if isinstance(e, dict)] if isinstance(entries, list) else []
-        declared[kind] = {str(e["name"]) for e in tables if "name" in e}
+        declared[kind] = {_printable(e["name"]) for e in tables if "name" in e}
     vehicles = data.get("vehicle", {})
     declared["vehicle"] = set(vehicles) if isinstance(vehicles, dict) else set()
     return declared
@@ -144,9 +144,11 @@ def _text_of(path: Path) -> str:
     def refuse(value: str, rule: str, remedy: str) -> StudyError:
         return StudyError(str(path), [Problem(place="file", value=value, rule=rule, remedy=remedy)])
 
-    if path.is_dir():
-        raise refuse("a folder", "a study is one TOML file", f"name the file in {path}")
     try:
+        if path.is_dir():
+            raise refuse("a folder", "a study is one TOML file", f"name the file in {path}")
+        if path.exists() and not path.is_file():
+            raise refuse("a device or pipe", "a study is a file", "name a TOML file")
         size = path.stat().st_size
         if size > _LARGEST:
             raise refuse(
@@ -164,7 +166,7 @@ def _text_of(path: Path) -> str:
             error.strerror or str(error), "the file must be readable", "check its permissions"
         ) from None
     try:
-        text = raw.decode("utf-8")
+        text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise refuse(
             f"byte {error.start} is not UTF-8 text",
@@ -183,7 +185,7 @@ def _text_of(path: Path) -> str:
 def _parse(text: str, source: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # bad TOML, numbers of thousands of digits
         problem = Problem(
             place="file",
             value=str(error) or "nesting too deep",
@@ -207,7 +209,14 @@ def _section(kind: Any, data: Any, place: str, problems: list[Problem]) -> Any:
     try:
         return TypeAdapter(kind).validate_python(data)
     except ValidationError as error:
-        problems += [_problem(cast("dict[str, Any]", e), place, kind, data) for e in error.errors()]
+        errors = [cast("dict[str, Any]", e) for e in error.errors()]
+        inner = {e["loc"][:-1] for e in errors if e["loc"]}
+        problems += [
+            _problem(e, place, kind, data)
+            for e in errors
+            # a list is too short only because of the mistakes in it, which are told already
+            if not (e["type"] == "too_short" and e["loc"] in inner)
+        ]
         return None
 
 
@@ -256,16 +265,16 @@ def _list(
 
 
 def _problem(error: dict[str, Any], place: str, kind: Any, data: Mapping[str, Any]) -> Problem:
-    # pydantic puts the tag of a discriminated union into the path; the file has no such key
-    location = [part for part in error["loc"] if part not in _tags(kind, data)]
+    location = list(error["loc"])
+    if location and location[0] in _tags(kind, data):
+        del location[0]  # the tag of a discriminated union; the file has no such key
     path = _path(place, location)
     if error["type"] == "extra_forbidden":
         known = _fields(kind, data) if len(location) == 1 else ()
         return _unknown_key(str(location[-1]), error["input"], known, _path(place, location[:-1]))
     if error["type"] == "missing":
-        return Problem(
-            place=path, value="nothing", rule="this key is required", remedy=f"add {location[-1]}"
-        )
+        remedy = "add one" if isinstance(location[-1], int) else f"add {location[-1]}"
+        return Problem(place=path, value="nothing", rule="this is required", remedy=remedy)
     if error["type"] in {"union_tag_invalid", "union_tag_not_found"}:
         kinds = error["ctx"].get("expected_tags", "'reference_unit', 'plan'")
         return Problem(
@@ -318,7 +327,8 @@ def _path(place: str, location: list[Any]) -> str:
         if isinstance(part, int):
             path += f"[{part + 1}]"
         else:
-            path += f".{part}" if path else str(part)
+            shown = part if str(part).isprintable() else repr(part)
+            path += f".{shown}" if path else str(shown)
     return path
 
 
@@ -350,6 +360,13 @@ def _fields(kind: Any, data: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(names)
 
 
+def _printable(value: Any) -> str:
+    return value if isinstance(value, str) and value.isprintable() else repr(value)
+
+
 def _show(value: Any) -> str:
-    text = repr(value)
+    try:
+        text = repr(value)
+    except (ValueError, RecursionError):  # thousands of digits, thousands of levels
+        return f"a {type(value).__name__} too long to show"
     return text if len(text) <= 80 else text[:77] + "..."

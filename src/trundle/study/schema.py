@@ -14,11 +14,14 @@ from trundle.study.fields import (
     AreaDensity,
     DampingCoefficient,
     Density,
+    Flag,
     Frequency,
     Length,
+    Line,
     Mass,
     Name,
     NonNegativeLength,
+    Number,
     Place,
     PositiveLength,
     Pressure,
@@ -30,6 +33,7 @@ from trundle.study.fields import (
     Stiffness,
     Time,
     Wavenumber,
+    Whole,
 )
 
 __all__ = [
@@ -58,9 +62,9 @@ _MANY = 1_000_000
 class GeneralSection(Section):
     """Title, seed, number of runs and record length: the keys above the first table."""
 
-    title: Annotated[str, Field(min_length=1, max_length=200)]
-    seed: Annotated[int, Field(ge=0, lt=2**63)]
-    runs: Annotated[int, Field(ge=1, le=_MANY)]
+    title: Annotated[Line, Field(max_length=200)]
+    seed: Annotated[Whole, Field(ge=0, lt=2**63)]
+    runs: Annotated[Whole, Field(ge=1, le=_MANY)]
     duration: Time
 
 
@@ -82,7 +86,7 @@ class MaterialSection(Section):
     """An isotropic material."""
 
     elastic_modulus: Pressure
-    poisson_ratio: Annotated[float, Field(ge=0.0, lt=0.5)] = 0.2
+    poisson_ratio: Annotated[Number, Field(ge=0.0, lt=0.5)] = 0.2
     density: Density
 
 
@@ -110,11 +114,11 @@ class PlanFloorSection(Section):
     beams_x: RectangleSection | None = None
     beams_y: RectangleSection | None = None
     secondary_y: RectangleSection | None = None
-    secondary_per_bay: Annotated[int, Field(ge=1, le=50)] = 1
+    secondary_per_bay: Annotated[Whole, Field(ge=1, le=50)] = 1
     column: RectangleSection | None = None
     storey_below: NonNegativeLength = 0.0
     storey_above: NonNegativeLength = 0.0
-    eccentric_beams: bool = True
+    eccentric_beams: Flag = True
     edges: EdgesSection = EdgesSection()
 
 
@@ -134,7 +138,7 @@ class BodySection(Section):
 class AxleSection(Section):
     """An axle of a planar vehicle."""
 
-    body: Annotated[int, Field(ge=0)] = 0
+    body: Annotated[Whole, Field(ge=0)] = 0
     setback: NonNegativeLength
     stiffness: Annotated[Stiffness, Field(gt=0.0)]
     damping: DampingCoefficient = 0.0
@@ -146,7 +150,7 @@ class AxleSection(Section):
 class HingeSection(Section):
     """A hinge between two bodies of a planar vehicle."""
 
-    bodies: tuple[int, int]
+    bodies: tuple[Whole, Whole]
     setback: Length
 
 
@@ -175,7 +179,7 @@ class RoadSection(Section):
 
     class_: Annotated[Literal["A", "B", "C", "D", "E", "F", "G", "H"], Field(alias="class")]
     level: Literal["lower", "geometric_mean", "upper"] = "geometric_mean"
-    waviness: Annotated[float, Field(ge=1.0, le=4.0)] = 2.0
+    waviness: Annotated[Number, Field(ge=1.0, le=4.0)] = 2.0
 
 
 class RoughnessSection(Section):
@@ -183,9 +187,9 @@ class RoughnessSection(Section):
 
     n_min: Wavenumber = 0.011
     n_max: Wavenumber = 2.83
-    n_max_follows_dt: bool = True
+    n_max_follows_dt: Flag = True
     contact_patch: NonNegativeLength = 0.0
-    gaussian_amplitudes: bool = False
+    gaussian_amplitudes: Flag = False
 
 
 class RouteSection(Section):
@@ -239,7 +243,7 @@ class CriteriaSection(Section):
 
     curves: Annotated[tuple[str, ...], Field(min_length=1)]
     method: Name
-    percentile: Annotated[float, Field(gt=0.0, le=100.0)] = 95.0
+    percentile: Annotated[Number, Field(gt=0.0, le=100.0)] = 95.0
     averaging: Literal["max_1s", "slow", "event"] = "max_1s"
 
 
@@ -266,5 +270,5 @@ class PrintedBoundSection(Section):
 class NoteSection(Section):
     """A note that the report prints."""
 
-    title: Annotated[str, Field(min_length=1, max_length=200)]
+    title: Annotated[Line, Field(max_length=200)]
     text: Annotated[str, Field(min_length=1, max_length=5000)]

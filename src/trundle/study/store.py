@@ -7,9 +7,11 @@ import json
 import os
 import platform
 import shutil
+import signal
 import tempfile
+import threading
 from collections.abc import Callable, Generator, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -20,12 +22,22 @@ from trundle import __version__
 from trundle.errors import InputError
 from trundle.study.run import Cell, CellKey, StudyResult
 
-__all__ = ["check_target", "new_results_folder", "provenance", "write_results"]
+__all__ = ["check_target", "new_results_folder", "provenance", "uninterrupted", "write_results"]
 
 Variable: TypeAlias = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 """Dimensions, data and attributes, as xarray takes them."""
 
-_MARK = "summary.json"
+_METHOD = "method_name"  # xarray's own selections have an argument called method
+_MARK = ".trundle-results"
+_OURS = {
+    _MARK,
+    "figures",
+    "report.html",
+    "results.zarr",
+    "study.toml",
+    "summary.csv",
+    "summary.json",
+}
 
 
 def check_target(folder: Path) -> None:
@@ -36,15 +48,12 @@ def check_target(folder: Path) -> None:
     InputError
         A file in its place, a folder that holds something else, or no permission.
     """
-    if folder.exists() and not folder.is_dir():
+    try:
+        _check_place(folder)
+    except OSError as error:
         raise InputError(
-            f"results folder {folder}: a file has this name; choose another with --out"
-        )
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / _MARK).is_file():
-        raise InputError(
-            f"results folder {folder} holds files that trundle did not write; "
-            "choose another with --out, or empty it"
-        )
+            f"results folder {folder}: {error.strerror or error}; choose another with --out"
+        ) from None
     parent = _nearest_folder(folder)
     if not parent.is_dir():
         raise InputError(f"results folder {folder}: {parent} is not a folder; choose another")
@@ -56,6 +65,26 @@ def check_target(folder: Path) -> None:
             f"results folder {folder} cannot be written ({error.strerror}); "
             "choose another with --out"
         ) from None
+
+
+def _check_place(folder: Path) -> None:
+    if folder.is_symlink():
+        raise InputError(f"results folder {folder} is a link; name the folder itself with --out")
+    if folder.exists() and not folder.is_dir():
+        raise InputError(
+            f"results folder {folder}: a file has this name; choose another with --out"
+        )
+    if not folder.is_dir():
+        return
+    if folder.resolve() == Path.cwd():
+        raise InputError("the results folder must not be the current folder; name one with --out")
+    foreign = {entry.name for entry in folder.iterdir()} - _OURS
+    if foreign or (any(folder.iterdir()) and not (folder / _MARK).is_file()):
+        raise InputError(
+            f"results folder {folder} holds files that trundle did not write"
+            + (f" ({', '.join(sorted(foreign)[:3])})" if foreign else "")
+            + "; choose another with --out, or empty it"
+        )
 
 
 def _nearest_folder(folder: Path) -> Path:
@@ -73,21 +102,49 @@ def new_results_folder(folder: Path) -> Generator[Path]:
     still stands, and the half-filled folder is gone.
     """
     folder = folder.absolute()
+    made = [parent for parent in folder.parents if not parent.exists()]
     folder.parent.mkdir(parents=True, exist_ok=True)
-    aside = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}-"))
+    aside = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".trundle-"))
     try:
         aside.chmod(0o755)
         yield aside
-        _swap(aside, folder)
+        with uninterrupted():
+            _swap(aside, folder)
     finally:
-        shutil.rmtree(aside, ignore_errors=True)
+        with uninterrupted():
+            shutil.rmtree(aside, ignore_errors=True)
+            if not folder.exists():
+                for parent in made:
+                    with suppress(OSError):
+                        parent.rmdir()
+
+
+@contextmanager
+def uninterrupted() -> Generator[None]:
+    """Hold back Ctrl-C and termination until the block is done.
+
+    Writers with threads of their own would go on writing behind an interrupted main thread.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    held: list[int] = []
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    old = [signal.signal(number, lambda n, _frame: held.append(n)) for number in numbers]
+    try:
+        yield
+    finally:
+        for number, handler in zip(numbers, old, strict=True):
+            signal.signal(number, handler)
+    if held:
+        raise KeyboardInterrupt
 
 
 def _swap(new: Path, place: Path) -> None:
     if not place.exists():
         os.rename(new, place)
         return
-    old = Path(tempfile.mkdtemp(dir=place.parent, prefix=f".{place.name}-old-"))
+    old = Path(tempfile.mkdtemp(dir=place.parent, prefix=".trundle-old-"))
     os.rename(place, old / "old")
     os.rename(new, place)
     shutil.rmtree(old, ignore_errors=True)
@@ -113,7 +170,8 @@ def provenance(result: StudyResult) -> dict[str, Any]:
 def write_results(result: StudyResult, folder: Path) -> None:
     """Write `results.zarr`, `summary.json`, `summary.csv` and the study file into a folder."""
     (folder / "study.toml").write_text(result.study.text, encoding="utf-8")
-    _write_zarr(result, folder / "results.zarr")
+    with uninterrupted():
+        _write_zarr(result, folder / "results.zarr")
     rows = list(summary_rows(result))
     with (folder / "summary.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]))
@@ -129,7 +187,8 @@ def write_results(result: StudyResult, folder: Path) -> None:
         },
     }
     text = json.dumps(_plain(summary), indent=1, allow_nan=False)
-    (folder / _MARK).write_text(text + "\n", encoding="utf-8")
+    (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+    (folder / _MARK).write_text("A later run of trundle may replace this folder.\n")
 
 
 def summary_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
@@ -220,7 +279,7 @@ def _stack(result: StudyResult, pick: Callable[[Cell], np.ndarray]) -> np.ndarra
 
 def _summary_dataset(result: StudyResult) -> xr.Dataset:
     cases, roads, methods = _grid(result)
-    cell = ("case", "road", "method", "run", "point")
+    cell = ("case", "road", _METHOD, "run", "point")
     first = next(iter(result.cells.values()))
 
     def variable(
@@ -249,7 +308,7 @@ def _summary_dataset(result: StudyResult) -> xr.Dataset:
         coords={
             "case": cases,
             "road": roads,
-            "method": methods,
+            _METHOD: methods,
             "run": np.arange(result.study.runs),
             "point": list(result.study.points),
             "band": ("band", first.spectra.mid_band, {"units": "Hz"}),
@@ -299,14 +358,14 @@ def _contact_dataset(result: StudyResult, case: str) -> xr.Dataset:
     return xr.Dataset(
         {
             "peak_contact_force": (
-                ("road", "method", "run", "contact"),
+                ("road", _METHOD, "run", "contact"),
                 peaks,
                 {"units": "N", "long_name": "largest contact force, static load included"},
             )
         },
         coords={
             "road": roads,
-            "method": methods,
+            _METHOD: methods,
             "run": np.arange(result.study.runs),
             "contact": list(cell(roads[0], methods[0]).contact_names),
         },

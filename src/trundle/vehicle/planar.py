@@ -202,13 +202,19 @@ def build_vehicle(
     mass, damping, stiffness = (keep.T @ m @ keep for m in (mass, damping, stiffness))
     contact_map = contact_map @ keep
     sag = _settle(name, stiffness, keep.T @ weight)
+    static_forces = contact_k * (contact_map @ sag)
+    if np.any(static_forces <= 0.0):
+        raise InputError(
+            f"vehicle {name!r}: axle {int(static_forces.argmin()) + 1} would lift off at rest, its "
+            f"static load is {static_forces.min():.3g} N; put the masses between the axles"
+        )
     return Vehicle(
         name=name,
         system=LinearSystem(mass=mass, damping=damping, stiffness=stiffness),
         contact_map=contact_map,
         contact_stiffness=contact_k,
         contact_damping=contact_c,
-        static_forces=contact_k * (contact_map @ sag),
+        static_forces=static_forces,
         setback=np.array([axle.setback - front for axle in axles]),
         lateral=np.array([axle.lateral for axle in axles]),
         contact_names=tuple(f"axle {i + 1}" for i in range(len(axles))),
@@ -239,6 +245,8 @@ def _check_parts(
 ) -> None:
     if not bodies or not axles:
         raise InputError("a vehicle needs at least one body and one axle")
+    if any(hinge.bodies[0] == hinge.bodies[1] for hinge in hinges):
+        raise InputError("a hinge must join two different bodies")
     named = [part.body for part in (*axles, *lumped)] + [b for h in hinges for b in h.bodies]
     if any(not 0 <= number < len(bodies) for number in named):
         raise InputError(f"body numbers must be 0 to {len(bodies) - 1}; got {sorted(set(named))}")

@@ -50,14 +50,14 @@ def main() -> int:
         print("making .venv", flush=True)
         venv.create(ENVIRONMENT, with_pip=True)
     constraints = ("--constraint", ROOT / "constraints.txt")
-    offline = ("install", "--quiet", "--no-index", "--find-links", wheels, *constraints)
+    offline = ("install", "-qq", "--no-index", "--find-links", wheels, *constraints)
     if not pip(*offline, *requirements, quiet=True):
         print("downloading packages (once)", flush=True)
-        download = ("download", "--quiet", "--only-binary", ":all:", "--dest", wheels)
+        download = ("download", "-qq", "--only-binary", ":all:", "--dest", wheels)
         if not pip(*download, *constraints, *requirements) or not pip(*offline, *requirements):
             print("set-up failed: see pip's message above", file=sys.stderr)
             return 1
-    editable = ("install", "--quiet", "--no-index", "--no-deps", "--no-build-isolation")
+    editable = ("install", "-qq", "--no-index", "--no-deps", "--no-build-isolation")
     return 0 if pip(*editable, "--editable", ROOT) else 1
 
 

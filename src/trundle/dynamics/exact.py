@@ -135,8 +135,8 @@ class ModalPropagator:
         self, omega: Float[Array, " modes"], ratios: Float[Array, " modes"], dt: float
     ) -> None:
         self.dt = positive("dt", dt)
-        self._square = (omega**2)[:, None]
-        self._double = (2.0 * ratios * omega)[:, None]
+        self._square = omega**2
+        self._double = 2.0 * ratios * omega
         state_matrix = np.zeros((len(omega), 2, 2))
         state_matrix[:, 0, 1] = 1.0
         state_matrix[:, 1, 0] = -(omega**2)
@@ -151,21 +151,23 @@ class ModalPropagator:
         return State(
             displacement=displacement,
             velocity=zero,
-            acceleration=zero,
-            force=self._square * displacement,
+            acceleration=zero[:0],
+            force=self._square[:, None] * displacement,
         )
 
     def predict(self, state: State, force: Float[Array, "modes runs"] | None = None) -> Motion:
         """Return the motion at the step's end under a known force there (none: zero)."""
-        q, v, p = state.displacement, state.velocity, state.force
-        out = []
-        for row in (0, 1):
-            motion = self.phi[:, row, 0, None] * q
-            motion += self.phi[:, row, 1, None] * v
-            motion += self.from_start[:, row, None] * p
-            if force is not None:
-                motion += self.from_end[:, row, None] * force
-            out.append(motion)
+        terms = ((self.phi[:, :, 0], state.displacement), (self.phi[:, :, 1], state.velocity))
+        terms += ((self.from_start, state.force),)
+        if force is not None:
+            terms += ((self.from_end, force),)
+        out = (np.empty_like(state.displacement), np.empty_like(state.displacement))
+        scratch = np.empty_like(state.displacement)
+        for row, motion in enumerate(out):
+            for i, (factor, values) in enumerate(terms):
+                np.multiply(factor[:, row, None], values, out=scratch if i else motion)
+                if i:
+                    np.add(motion, scratch, out=motion)
         return Motion(displacement=out[0], velocity=out[1])
 
     def respond(self, force: Float[Array, "modes columns"]) -> Motion:
@@ -176,12 +178,20 @@ class ModalPropagator:
         )
 
     def finish(self, state: State, motion: Motion, force: Float[Array, "modes runs"]) -> State:
-        """Return the state at the step's end, given its motion and the force there."""
-        del state
-        acceleration = force - self._double * motion.velocity - self._square * motion.displacement
+        """Return the state at the step's end; its acceleration is left to `acceleration`."""
         return State(
             displacement=motion.displacement,
             velocity=motion.velocity,
-            acceleration=acceleration,
+            acceleration=state.acceleration,
             force=force,
+        )
+
+    def acceleration(
+        self, rows: Float[Array, "points modes"], state: State
+    ) -> Float[Array, "points runs"]:
+        """Return ``rows @ q''`` from the equation of motion, without forming q'' of every mode."""
+        return (
+            rows @ state.force
+            - (rows * self._double) @ state.velocity
+            - (rows * self._square) @ state.displacement
         )

@@ -24,15 +24,17 @@ class State:
 
     Attributes
     ----------
-    displacement, velocity, acceleration : ndarray of float, shape (n_dofs, n_runs)
-        Motion [m], [m/s], [m/s2] (or the same in generalised coordinates).
+    displacement, velocity : ndarray of float, shape (n_dofs, n_runs)
+        Motion [m], [m/s] (or the same in generalised coordinates).
+    acceleration : ndarray of float, shape (n_dofs, n_runs)
+        Acceleration [m/s2]; schemes that do not need it keep it empty.
     force : ndarray of float, shape (n_dofs, n_runs)
         Force at that time [N]; schemes that do not need it keep it empty.
     """
 
     displacement: Float[Array, "dofs runs"]
     velocity: Float[Array, "dofs runs"]
-    acceleration: Float[Array, "dofs runs"]
+    acceleration: Float[Array, "accelerated runs"]
     force: Float[Array, "forced runs"]
 
 

@@ -171,15 +171,15 @@ class ModalFloor:
         load = self._load(step, forces)
         if not applied:
             change = self._propagator.respond(load)
-            motion = Motion(
-                displacement=motion.displacement + change.displacement,
-                velocity=motion.velocity + change.velocity,
-            )
+            change.displacement[...] += motion.displacement
+            change.velocity[...] += motion.velocity
+            motion = change
         return self._propagator.finish(state, motion, load)
 
     def read(self, state: State) -> Reading:
         points = self._points
-        return points @ state.displacement, points @ state.velocity, points @ state.acceleration
+        acceleration = self._propagator.acceleration(points, state)
+        return points @ state.displacement, points @ state.velocity, acceleration
 
     def _load(self, step: int, forces: Array) -> Array:
         value, _ = self._shapes_at(step)

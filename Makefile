@@ -1,11 +1,14 @@
-# make demo   set up and run the paper's study; prints two tables and the path of the report
-# make test   set up and run every check and test
-# make check  lint, types, layers, docstrings only
-# make fast   the tests without those marked slow
+# make demo      set up and run the paper's study; prints two tables and the path of the report
+# make test      set up and run every check and test
+# make check     format, lint, layers, types and docstrings only
+# make fast      the tests without those marked slow
+# make validate  the published cases and the slow tests
+# make bench     speed, as ratios within one run
+# make docs      the reference of all public names, as HTML in build/docs
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: demo test check fast clean
+.PHONY: help demo check test fast validate bench docs clean
 .DEFAULT_GOAL := help
 
 help:
@@ -23,17 +26,28 @@ demo: .venv/.ready-run
 	$(BIN)/trundle run examples/paper/study.toml --out results/paper
 
 check: .venv/.ready-dev
-	$(BIN)/ruff format --check src tests scripts
-	$(BIN)/ruff check src tests scripts
+	$(BIN)/ruff format --check src tests scripts benchmarks examples
+	$(BIN)/ruff check src tests scripts benchmarks examples
 	$(BIN)/lint-imports --no-cache
 	$(BIN)/basedpyright --pythonpath $(BIN)/python
 	$(BIN)/python -m numpydoc lint $$(git ls-files "src/*.py")
 
 test: check
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2
 
 fast: .venv/.ready-dev
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -n 2 -m "not slow"
+
+validate: .venv/.ready-dev
+	$(BIN)/python -m pytest -n 2 -v tests/validation
+	$(BIN)/python -m pytest -n 2 -v -m slow
+
+bench: .venv/.ready-dev
+	$(BIN)/python benchmarks/direct_step.py
+
+docs: .venv/.ready-dev
+	$(BIN)/python -m sphinx -q -b html docs build/docs
+	@echo "reference: build/docs/index.html"
 
 clean:
-	rm -rf .venv results
+	rm -rf .venv results build

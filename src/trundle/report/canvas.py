@@ -9,8 +9,9 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
-__all__ = ["COLOURS", "STYLE", "Picture", "new_figure", "save"]
+__all__ = ["COLOURS", "STYLE", "Picture", "make_logarithmic", "new_figure", "save"]
 
 # Okabe and Ito's palette (2008), told apart by nearly everybody.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F")
@@ -60,6 +61,15 @@ def new_figure(
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False, sharex="x" in share, sharey="y" in share)
     return figure, list(axes.ravel())
+
+
+def make_logarithmic(axes: Axes, which: str) -> None:
+    """Make the axes named in `which` (x, y or both) logarithmic, with plain numbers on them."""
+    for name in which:
+        getattr(axes, f"set_{name}scale")("log")
+        axis = axes.xaxis if name == "x" else axes.yaxis
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(NullFormatter())
 
 
 def save(figure: Figure, folder: Path, name: str) -> None:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trundle.criteria import Criterion
-from trundle.report.canvas import COLOURS, new_figure
+from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
 from trundle.report.tables import ComparisonRow
 from trundle.study.run import CellKey, StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
@@ -63,10 +63,9 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
             markersize=3,
             label=case.name,
         )
+    make_logarithmic(axes, "xy")
     ticks = [1, 2, 4, 8, 16, 31.5, 63]
     axes.set(
-        xscale="log",
-        yscale="log",
         xlim=(0.9, 130.0),
         xlabel="mid-band frequency [Hz]",
         ylabel=f"RMS velocity in one-third octaves [um/s]\n({_rule(result)})",
@@ -130,7 +129,8 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
                 va="bottom",
                 fontsize=8,
             )
-    axes.set(yscale="log", ylabel="peak acceleration, 0-peak [gal]")
+    make_logarithmic(axes, "y")
+    axes.set(ylabel="peak acceleration, 0-peak [gal]")
     axes.set_xticks(range(len(labels)), labels, fontsize=8)
     axes.set_title(f"{point}, method {method!r}: median and 5-95 % of the runs", fontsize=9)
     return figure
@@ -156,7 +156,8 @@ def comparison_figure(rows: Sequence[ComparisonRow]) -> Figure:
                 markersize=6,
                 markeredgewidth=1.6,
             )
-        panel.set(xscale="log", xlabel=unit)
+        make_logarithmic(panel, "x")
+        panel.set(xlabel=unit)
     axes[0].set_yticks(
         range(len(rows)), [f"{row.case} {row.road}, {row.method}" for row in rows], fontsize=8
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from trundle.report.canvas import COLOURS, new_figure
+from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
 from trundle.road import CLASS_NAMES, FITTED_RANGE, RoadClass, RoughnessBand, synthesise
 
 __all__ = ["profiles_figure", "roughness_figure"]
@@ -30,9 +30,8 @@ def roughness_figure() -> Figure:
         textcoords="offset points",
         ha="center",
     )
+    make_logarithmic(axes, "xy")
     axes.set(
-        xscale="log",
-        yscale="log",
         xlim=(0.01, 10.0),
         xlabel="spatial frequency n [cycle/m]",
         ylabel="displacement PSD Gd(n) [m³]",

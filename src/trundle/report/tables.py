@@ -125,8 +125,8 @@ def comparison_rows(result: StudyResult) -> list[ComparisonRow]:
 def bound_rows(result: StudyResult) -> list[BoundRow]:
     """Return the printed upper bounds beside ours, from the medians of single routes.
 
-    An absolute maximum is the sum of the single peaks for accelerations; for velocities the
-    printed values are nearest to the root sum of squares, which is what is set beside them.
+    An absolute maximum is given twice, as the sum and as the root sum of squares: the
+    printed accelerations are sums, the printed velocities nearer to the other.
     """
     study = result.study
     singles = [case.name for case in study.cases if len(case.routes) == 1]
@@ -136,26 +136,29 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
         medians = {case: _medians(result, case, printed) for case in (*singles, *many)}
         peaks = upper_bounds([medians[case][0] for case in singles])
         rms = upper_bounds([medians[case][1] for case in singles])
+        ours: list[tuple[str, float, float]] = []
         if printed.bound == "single":
-            ours = (peaks.largest, rms.largest, "largest single route")
+            ours = [("largest single route", peaks.largest, rms.largest)]
         elif printed.bound == "absolute maximum":
-            ours = (peaks.absolute_sum, rms.root_sum_square, "a: sum; v: root sum of squares")
+            ours = [
+                ("sum", peaks.absolute_sum, rms.absolute_sum),
+                ("root sum of squares", peaks.root_sum_square, rms.root_sum_square),
+            ]
         elif many:
-            ours = (*medians[many[0]], f"simulated: {many[0]}")
-        else:
-            continue
-        rows.append(
+            ours = [(f"simulated: {many[0]}", *medians[many[0]])]
+        rows += [
             BoundRow(
                 bound=printed.bound,
-                rule=ours[2],
+                rule=rule,
                 road=printed.road,
                 method=printed.method,
-                peak=ours[0] / GAL,
-                rms=ours[1] / MICROMETRE_PER_SECOND,
+                peak=peak / GAL,
+                rms=velocity / MICROMETRE_PER_SECOND,
                 printed_peak=printed.peak_acceleration / GAL,
                 printed_rms=printed.rms_velocity / MICROMETRE_PER_SECOND,
             )
-        )
+            for rule, peak, velocity in ours
+        ]
     return rows
 
 

@@ -105,6 +105,9 @@ def test_the_store_holds_the_numbers_with_units_and_provenance(folder, result):
     forces = tree["contacts/both"]["peak_contact_force"]
     assert forces.attrs["units"] == "N"
     assert forces.sizes["contact"] == 6
+    history = tree["contacts/both/coupled"]["contact_force"]
+    assert history.dims == ("road", "time", "contact")
+    assert np.array_equal(history.sel(road="B").to_numpy(), cell.history.contact_forces)
 
 
 def test_the_summaries_agree_with_the_store(folder, result):

@@ -15,6 +15,7 @@ from trundle.report import figures_floor, figures_response, figures_road, figure
 from trundle.report.canvas import STYLE, Picture, save
 from trundle.report.tables import bound_rows, comparison_rows, summary_rows, verdict_matrix
 from trundle.road import CLASS_NAMES, class_limits
+from trundle.structure import self_weight_deflection
 from trundle.study.run import StudyResult
 from trundle.study.store import provenance
 from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
@@ -232,6 +233,7 @@ def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
         frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],
         n_modes=0 if modes is None else modes.n_modes,
         moving_mass=study.floor.moving_mass() / 1e3,
+        sag=-1e3 * float(self_weight_deflection(study.floor).min()),
         class_limits=_class_table(),
         gal=GAL,
         micrometre=MICROMETRE_PER_SECOND,

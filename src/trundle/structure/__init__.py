@@ -12,6 +12,7 @@ from trundle.structure.floor import (
 from trundle.structure.plan import EDGES, FloorPlan, Rectangle, build_floor
 from trundle.structure.reference import reference_plan, reference_unit
 from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
+from trundle.structure.statics import self_weight_deflection
 
 __all__ = [
     "CONCRETE",
@@ -31,4 +32,5 @@ __all__ = [
     "build_floor",
     "reference_plan",
     "reference_unit",
+    "self_weight_deflection",
 ]

@@ -252,6 +252,10 @@ def _write_zarr(result: StudyResult, path: Path) -> None:
         groups[f"/histories/{method.name}"] = _history_dataset(result, method.name)
     for case in study.cases:
         groups[f"/contacts/{case.name}"] = _contact_dataset(result, case.name)
+        for method in study.methods:
+            groups[f"/contacts/{case.name}/{method.name}"] = _force_dataset(
+                result, case.name, method.name
+            )
     # Format 2: fixed-length text and consolidated metadata are part of its specification.
     xr.DataTree.from_dict(groups).to_zarr(path, mode="w", consolidated=True, zarr_format=2)
 
@@ -368,5 +372,20 @@ def _contact_dataset(result: StudyResult, case: str) -> xr.Dataset:
             _METHOD: methods,
             "run": np.arange(result.study.runs),
             "contact": list(cell(roads[0], methods[0]).contact_names),
+        },
+    )
+
+
+def _force_dataset(result: StudyResult, case: str, method: str) -> xr.Dataset:
+    _, roads, _ = _grid(result)
+    cells = [result.cells[CellKey(case, road, method)] for road in roads]
+    forces = np.stack([cell.history.contact_forces for cell in cells])
+    attributes = {"units": "N", "run": 0, "long_name": "contact force, positive when pressing"}
+    return xr.Dataset(
+        {"contact_force": (("road", "time", "contact"), forces, attributes)},
+        coords={
+            "road": roads,
+            "time": ("time", cells[0].history.time, {"units": "s"}),
+            "contact": list(cells[0].contact_names),
         },
     )

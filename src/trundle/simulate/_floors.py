@@ -258,6 +258,7 @@ class FullFloor:
         self._value, self._slope = rows.value.reshape(shape), rows.slope.reshape(shape)
         self._load_share = rows.load_share.reshape(-1, self._n)
         self._route_dofs = rows.used_dofs()
+        self._gathered_at, self._gathered = np.zeros(0, dtype=np.intp), np.zeros((0, 0))
         # Unit solutions, one row a route dof, so that a step reads whole rows.
         self._unit = self._unit_solutions() if coupled else np.zeros((0, 0))
         self._unit_at_route = self._unit[:, self._route_dofs] if coupled else self._unit
@@ -298,7 +299,7 @@ class FullFloor:
         if not applied:
             shared = self._load_share[step][:, None] * forces
             load = _spread(self._value[step]).T @ shared
-            change = -(self._unit[self._places(step)].T @ load)
+            change = -(load.T @ self._unit_under_wheels(step)).T
             motion = Motion(
                 displacement=motion.displacement + change,
                 velocity=motion.velocity + self._propagator.a1 * change,
@@ -323,6 +324,14 @@ class FullFloor:
         shared = self._load_share[step][:, None] * forces
         np.subtract.at(load, self._dofs[step], self._value[step][:, :, None] * shared[:, None, :])
         return load
+
+    def _unit_under_wheels(self, step: int) -> Array:
+        """Return the unit solutions of the wheels' dofs, gathered anew only at a mesh line."""
+        at = self._places(step)
+        if not np.array_equal(at, self._gathered_at):
+            self._gathered_at = at
+            self._gathered = np.take(self._unit, at, axis=0)
+        return self._gathered
 
     def _places(self, step: int) -> Array:
         """Return where the wheels' dofs stand among the route's; unused ones point anywhere."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
+from threadpoolctl import ThreadpoolController
 
 from trundle._checks import count, positive
 from trundle._typing import Array, SparseMatrix
@@ -195,15 +196,18 @@ def ensemble(
     coupled = isinstance(method, Coupled)
     reader = _point_rows(floor.floor, points)
     contact_floor = _contact_floor(floor, rows, timeline, reader, coupled=coupled)
-    record = _run(
-        contact_floor,
-        law,
-        timeline,
-        road,
-        coupled=coupled,
-        static=isinstance(crossings[0].entry, StaticStart),
-        progress=progress,
-    )
+    # The steps' products are small; threads that wait for them would only take the cores
+    # from the sparse solver, which has threads of its own.
+    with ThreadpoolController().select(internal_api="openblas").limit(limits=1):
+        record = _run(
+            contact_floor,
+            law,
+            timeline,
+            road,
+            coupled=coupled,
+            static=isinstance(crossings[0].entry, StaticStart),
+            progress=progress,
+        )
     if floor.modes is not None:
         residual = point_residual(floor.flexibility, floor.modes, reader)
         record = record.plus(*residual_motion(rows, record.forces, residual, dt))

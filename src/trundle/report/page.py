@@ -23,6 +23,7 @@ from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 __all__ = ["write_report"]
 
 Tell = Callable[[str, float], None]
+Drawing = tuple[Picture, Callable[[], Figure]]
 
 _FORCE_SPEEDS = (15.0 * KMH, 30.0 * KMH, 40.0 * KMH)
 
@@ -62,15 +63,15 @@ def write_report(result: StudyResult, folder: Path, *, tell: Tell | None = None)
     return page
 
 
-def _figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], Figure]]]:
-    yield from _input_figures(result)
+def _figures(result: StudyResult) -> Iterator[Drawing]:
+    yield from _floor_figures(result)
+    yield from _road_figures(result)
+    yield from _vehicle_figures(result)
     yield from _response_figures(result)
 
 
-def _input_figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], Figure]]]:
+def _floor_figures(result: StudyResult) -> Iterator[Drawing]:
     study = result.study
-    drive = next(iter(study.drives.values()))
-    vehicle, road = drive.vehicle, next(iter(study.roads.values()))
     yield (
         Picture(
             name="plan",
@@ -108,6 +109,10 @@ def _input_figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], 
             ),
             lambda: figures_floor.modes_figure(study.floor, modes),
         )
+
+
+def _road_figures(result: StudyResult) -> Iterator[Drawing]:
+    study = result.study
     yield (
         Picture(
             name="roughness",
@@ -125,6 +130,12 @@ def _input_figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], 
         ),
         lambda: figures_road.profiles_figure(study.band, study.seed),
     )
+
+
+def _vehicle_figures(result: StudyResult) -> Iterator[Drawing]:
+    study = result.study
+    drive = next(iter(study.drives.values()))
+    vehicle, road = drive.vehicle, next(iter(study.roads.values()))
     yield (
         Picture(
             name="vehicle",
@@ -155,7 +166,7 @@ def _input_figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], 
     )
 
 
-def _response_figures(result: StudyResult) -> Iterator[tuple[Picture, Callable[[], Figure]]]:
+def _response_figures(result: StudyResult) -> Iterator[Drawing]:
     study = result.study
     methods = [method.name for method in study.methods]
     point, road = next(iter(study.points)), list(study.roads)[-1]

@@ -163,7 +163,6 @@ def build_vehicle(
         A part that names a body which does not exist, or a vehicle that does not stand.
     """
     _check_parts(bodies, axles, hinges, lumped)
-    front = min(axle.setback for axle in axles)
     coordinates = _body_coordinates(bodies)
     wheels = [i for i, axle in enumerate(axles) if axle.axle_mass > 0.0]
     size = sum(len(c) for c in coordinates) + len(wheels)
@@ -177,49 +176,60 @@ def build_vehicle(
     for part in lumped:
         row = rows.at(part.body, part.setback)
         mass += part.mass * np.outer(row, row)
-    contact_map = np.zeros((len(axles), size))
-    contact_k, contact_c = np.zeros(len(axles)), np.zeros(len(axles))
+    contacts = _Contacts(len(axles), size)
     for i, axle in enumerate(axles):
         row = rows.at(axle.body, axle.setback)
         if axle.axle_mass > 0.0:
-            wheel = np.zeros(size)
-            wheel[size - len(wheels) + wheels.index(i)] = 1.0
+            wheel = np.eye(size)[size - len(wheels) + wheels.index(i)]
+            stretch = np.outer(row - wheel, row - wheel)
             mass += axle.axle_mass * np.outer(wheel, wheel)
-            stretch = row - wheel
-            stiffness += axle.stiffness * np.outer(stretch, stretch)
-            damping += axle.damping * np.outer(stretch, stretch)
-            contact_map[i], contact_k[i], contact_c[i] = (
-                wheel,
-                axle.tyre_stiffness,
-                axle.tyre_damping,
-            )
+            stiffness += axle.stiffness * stretch
+            damping += axle.damping * stretch
+            contacts.put(i, wheel, axle.tyre_stiffness, axle.tyre_damping)
         else:
-            contact_map[i], contact_k[i], contact_c[i] = row, axle.stiffness, axle.damping
-    stiffness += contact_map.T @ (contact_k[:, None] * contact_map)
-    damping += contact_map.T @ (contact_c[:, None] * contact_map)
+            contacts.put(i, row, axle.stiffness, axle.damping)
+    stiffness += contacts.matrix(contacts.stiffness)
+    damping += contacts.matrix(contacts.damping)
     weight = GRAVITY * _vertical_masses(bodies, lumped, axles, rows, wheels)
     keep = _allowed_motions(hinges, rows)
     mass, damping, stiffness = (keep.T @ m @ keep for m in (mass, damping, stiffness))
-    contact_map = contact_map @ keep
+    contact_map = contacts.map @ keep
     sag = _settle(name, stiffness, keep.T @ weight)
-    static_forces = contact_k * (contact_map @ sag)
+    return Vehicle(
+        name=name,
+        system=LinearSystem(mass=mass, damping=damping, stiffness=stiffness),
+        contact_map=contact_map,
+        contact_stiffness=contacts.stiffness,
+        contact_damping=contacts.damping,
+        static_forces=_pressing(name, contacts.stiffness * (contact_map @ sag)),
+        setback=np.array([axle.setback for axle in axles]) - min(a.setback for a in axles),
+        lateral=np.array([axle.lateral for axle in axles]),
+        contact_names=tuple(f"axle {i + 1}" for i in range(len(axles))),
+        source=source,
+    )
+
+
+class _Contacts:
+    """Collect where a vehicle touches the ground, and through what."""
+
+    def __init__(self, n_contacts: int, n_dofs: int) -> None:
+        self.map = np.zeros((n_contacts, n_dofs))
+        self.stiffness, self.damping = np.zeros(n_contacts), np.zeros(n_contacts)
+
+    def put(self, i: int, row: Array, stiffness: float, damping: float) -> None:
+        self.map[i], self.stiffness[i], self.damping[i] = row, stiffness, damping
+
+    def matrix(self, values: Array) -> Array:
+        return self.map.T @ (values[:, None] * self.map)
+
+
+def _pressing(name: str, static_forces: Array) -> Array:
     if np.any(static_forces <= 0.0):
         raise InputError(
             f"vehicle {name!r}: axle {int(static_forces.argmin()) + 1} would lift off at rest, its "
             f"static load is {static_forces.min():.3g} N; put the masses between the axles"
         )
-    return Vehicle(
-        name=name,
-        system=LinearSystem(mass=mass, damping=damping, stiffness=stiffness),
-        contact_map=contact_map,
-        contact_stiffness=contact_k,
-        contact_damping=contact_c,
-        static_forces=static_forces,
-        setback=np.array([axle.setback - front for axle in axles]),
-        lateral=np.array([axle.lateral for axle in axles]),
-        contact_names=tuple(f"axle {i + 1}" for i in range(len(axles))),
-        source=source,
-    )
+    return static_forces
 
 
 class _Rows:

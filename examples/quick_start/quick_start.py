@@ -8,13 +8,17 @@ def main() -> list[str]:
     floor = tr.structure.reference_unit(mesh_size=2.0)
     truck = tr.vehicle.container_truck_40ft()
     rear = tr.route.Route.straight((0, 76.5), (52, 76.5), speed=15 / 3.6, name="rear")
-    crossing = tr.simulate.Crossing(vehicle=truck, route=rear, road=tr.road.RoadClass("B"))
-    method = tr.simulate.Coupled(integration=tr.simulate.Modal(f_max=90, dt=0.005))
+    crossing = tr.simulate.Crossing(truck, rear, tr.road.RoadClass("B"))
     runs = tr.simulate.ensemble(
-        floor, crossing, method=method, points={"tool": (32.5, 62.5)}, n_runs=20, seed=1
+        floor,
+        crossing,
+        method=tr.simulate.Coupled(),
+        points={"tool": (32.5, 62.5)},
+        n_runs=20,
+        seed=1,
     )
     print(runs)
-    return [str(verdict) for verdict in tr.criteria.assess(runs, tr.criteria.VC, f_max=90)]
+    return [str(verdict) for verdict in tr.criteria.assess(runs, tr.criteria.VC)]
 
 
 if __name__ == "__main__":

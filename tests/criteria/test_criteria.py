@@ -8,7 +8,9 @@ from trundle.errors import InputError
 from trundle.simulate import Runs
 
 
-def sine_runs(f: float, amplitude: float, *, dt: float = 0.0025, n_runs: int = 3) -> Runs:
+def sine_runs(
+    f: float, amplitude: float, *, dt: float = 0.0025, n_runs: int = 3, f_max: float = np.inf
+) -> Runs:
     """A velocity sine [m/s] at one point for 20 s, the runs 1, 2, 3 ... times as strong."""
     t = dt * np.arange(round(20.0 / dt))
     ease = np.clip(np.minimum(t, 20 - t) / 4, 0, 1)  # a sudden start is a broadband event
@@ -17,7 +19,7 @@ def sine_runs(f: float, amplitude: float, *, dt: float = 0.0025, n_runs: int = 3
     a = 2 * np.pi * f * v
     return Runs(
         time=t, displacement=v, velocity=v, acceleration=a, contact_forces=np.zeros((n_runs, len(t), 1)),
-        point_names=("p",), contact_names=("c",), seed=0, method="made",
+        point_names=("p",), contact_names=("c",), seed=0, method="made", f_max=f_max,
     )  # fmt: skip
 
 
@@ -79,7 +81,7 @@ def test_what_was_not_computed_is_not_a_pass():
     assert quiet.margin > 1
     loud = assess(sine_runs(10.0, 1e-3, dt=0.025), find_criterion("VC-A"))[0]
     assert loud.status == "fail"
-    cut = assess(sine_runs(10.0, 1e-9), find_criterion("VC-A"), f_max=40.0)[0]
+    cut = assess(sine_runs(10.0, 1e-9, f_max=40.0), find_criterion("VC-A"))[0]
     assert cut.status == "not assessed"
 
 

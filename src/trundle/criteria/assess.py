@@ -75,7 +75,6 @@ def assess(
     *,
     percentile: float = 95.0,
     averaging: Averaging = "max_1s",
-    f_max: float = np.inf,
 ) -> tuple[Verdict, ...]:
     """Hold every point of an ensemble against every criterion.
 
@@ -89,21 +88,19 @@ def assess(
         Share of runs that the compared level must cover, 0 to 100.
     averaging : {"max_1s", "slow", "event"}
         Averaging rule of band levels.
-    f_max : float
-        Highest frequency that the computation contains [Hz].
 
     Returns
     -------
     tuple of Verdict
         By point, then by criterion.
     """
-    spectra = velocity_spectra(runs, averaging=averaging, f_max=f_max)
+    spectra = velocity_spectra(runs, averaging=averaging)
     return assess_spectra(
         spectra,
         runs.peak_acceleration(),
         criteria,
         percentile=percentile,
-        top=min(f_max, runs.sampling_frequency / 2.5),
+        top=min(runs.f_max, runs.sampling_frequency / 2.5),
     )
 
 

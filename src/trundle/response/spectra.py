@@ -43,9 +43,7 @@ class BandSpectra:
         return np.percentile(self.values, share, axis=0)
 
 
-def velocity_spectra(
-    runs: Runs, *, averaging: Averaging = "max_1s", f_max: float = np.inf
-) -> BandSpectra:
+def velocity_spectra(runs: Runs, *, averaging: Averaging = "max_1s") -> BandSpectra:
     """Filter the velocities of an ensemble into bands from 1 to 80 Hz.
 
     Parameters
@@ -54,13 +52,15 @@ def velocity_spectra(
         The ensemble.
     averaging : {"max_1s", "slow", "event"}
         Averaging rule.
-    f_max : float
-        Highest frequency that the computation contains, such as the last mode's [Hz];
-        bands that reach beyond are not resolved.
+
+    Returns
+    -------
+    BandSpectra
+        Bands that reach beyond the last mode or the time step are not resolved.
     """
     mid_band = mid_band_frequencies()
     fs = runs.sampling_frequency
-    resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= f_max)
+    resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= runs.f_max)
     velocity = np.moveaxis(runs.velocity, 1, -1)
     values = np.full((*velocity.shape[:2], len(mid_band)), np.nan)
     if resolved.any():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field
 from typing import TypeAlias
 
 import numpy as np
@@ -22,7 +22,7 @@ Integration: TypeAlias = Newmark | Modal
 _RUN_IN_LIMIT = 20.0  # s; a vehicle without damping would otherwise run in for ever
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Crossing:
     """Hold one vehicle's drive over the floor.
 
@@ -50,6 +50,7 @@ class Crossing:
     vehicle: Vehicle
     route: Route
     road: RoadClass | Profile
+    _: KW_ONLY
     band: RoughnessBand = field(default_factory=RoughnessBand)
     entry: Entry = field(default_factory=lambda: DriveIn(length=3.0))
     run_in: float | None = None
@@ -91,14 +92,15 @@ class Decoupled:
     Attributes
     ----------
     integration : Newmark or Modal
-        Time integration of vehicle and floor.
+        Time integration of vehicle and floor; modes to 90 Hz in steps of 5 ms, which shows
+        bands up to 80 Hz, unless given.
     damping : Rayleigh or ModalRatio
         Damping of the floor.
     contact : Hermite or Hat
         Interpolation of the load between nodes.
     """
 
-    integration: Integration
+    integration: Integration = field(default_factory=lambda: Modal(f_max=90.0, dt=0.005))
     damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
     contact: ContactShape = field(default_factory=Hermite)
 
@@ -119,7 +121,7 @@ class Coupled:
     `Decoupled`.
     """
 
-    integration: Integration
+    integration: Integration = field(default_factory=lambda: Modal(f_max=90.0, dt=0.005))
     damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
     contact: ContactShape = field(default_factory=Hermite)
 

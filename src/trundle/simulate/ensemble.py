@@ -221,6 +221,7 @@ def ensemble(
         contact_names=_contact_names(crossings),
         seed=seed,
         method=str(method),
+        f_max=_highest_frequency(method.integration),
         warnings=fitness_warnings(crossings, method, floor.floor, floor.modes, record.forces),
     )
 
@@ -337,6 +338,11 @@ def _below(modes: Modes, f_max: float) -> Modes:
         residuals=modes.residuals[:keep],
         f_max=f_max,
     )
+
+
+def _highest_frequency(integration: Integration) -> float:
+    nyquist = 0.5 / integration.dt
+    return min(integration.f_max, nyquist) if isinstance(integration, Modal) else nyquist
 
 
 def _as_tuple(crossings: Crossing | Sequence[Crossing]) -> tuple[Crossing, ...]:

@@ -31,6 +31,8 @@ class Runs:
         Seed from which every run's road was drawn.
     method : str
         Interaction, integration, damping and contact, in words.
+    f_max : float
+        Highest frequency that the computation contains [Hz].
     warnings : tuple of FitnessWarning
         Doubts about the result's fitness.
     """
@@ -44,6 +46,7 @@ class Runs:
     contact_names: tuple[str, ...]
     seed: int
     method: str
+    f_max: float
     warnings: tuple[FitnessWarning, ...] = ()
 
     @property

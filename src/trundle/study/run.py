@@ -74,6 +74,8 @@ class Cell:
         Names of the contacts.
     history : History
         The first run in time.
+    top : float
+        Highest frequency that its levels can be trusted to [Hz].
     warnings : tuple of FitnessWarning
         Doubts about the cell.
     """
@@ -85,6 +87,7 @@ class Cell:
     peak_contact_force: Float[Array, "runs contacts"]
     contact_names: tuple[str, ...]
     history: History
+    top: float
     warnings: tuple[FitnessWarning, ...]
 
 
@@ -162,7 +165,7 @@ def run_study(study: Study, *, report: Report | None = None) -> StudyResult:
             )
         cells[key] = _run_cell(study, key, (case, method), prepared[method.name], bar)
         if study.assessment is not None and method.name == study.assessment.method:
-            verdicts[key] = _assess(study, cells[key], method)
+            verdicts[key] = _assess(study, cells[key])
         done += float(cost)
     tell("done", 1.0)
     return StudyResult(study=study, cells=cells, verdicts=verdicts, modes=modes)
@@ -227,7 +230,7 @@ def _run_cell(
         progress=progress,
     )
     averaging = study.assessment.averaging if study.assessment else "max_1s"
-    spectra = velocity_spectra(runs, averaging=averaging, f_max=top_frequency(method))
+    spectra = velocity_spectra(runs, averaging=averaging)
     return Cell(
         key=key,
         peak_acceleration=runs.peak_acceleration(),
@@ -236,6 +239,7 @@ def _run_cell(
         peak_contact_force=runs.contact_forces.max(axis=1),
         contact_names=runs.contact_names,
         history=_first_run(runs),
+        top=min(runs.f_max, runs.sampling_frequency / 2.5),
         warnings=runs.warnings,
     )
 
@@ -250,20 +254,12 @@ def _first_run(runs: Runs) -> History:
     )
 
 
-def top_frequency(method: MethodPlan) -> float:
-    """Return the highest frequency that a method's result contains [Hz]."""
-    integration = method.interaction.integration
-    nyquist = 0.5 / integration.dt
-    return min(integration.f_max, nyquist) if isinstance(integration, Modal) else nyquist
-
-
-def _assess(study: Study, cell: Cell, method: MethodPlan) -> tuple[Verdict, ...]:
+def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:
     assert study.assessment is not None  # the caller has looked
-    dt = method.interaction.integration.dt
     return assess_spectra(
         cell.spectra,
         cell.peak_acceleration,
         study.assessment.criteria,
         percentile=study.assessment.percentile,
-        top=min(top_frequency(method), 1.0 / (2.5 * dt)),
+        top=cell.top,
     )

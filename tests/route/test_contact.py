@@ -165,6 +165,23 @@ def test_the_share_on_the_floor_is_whole_inside_and_its_slope_is_its_derivative(
     )
 
 
+def test_the_rate_that_a_wheel_feels_is_the_derivative_of_its_height():
+    """With the floor's share g growing along the way, d(g H)/ds = g' H + g dH/ds."""
+    floor = free_floor()
+    u = np.random.default_rng(5).standard_normal(floor.n_dofs)
+    entry, s, h = DriveIn(length=3.0), np.linspace(0.2, 11.8, 60), 1e-6
+
+    def along(station):
+        places = np.column_stack([station, np.full_like(station, 2.3)])
+        rows = contact_rows(floor, places, np.repeat(ALONG_X, len(s), axis=0), shape=Hermite())
+        return rows.scaled(*entry.share(station, 12.0))
+
+    rows, before, after = along(s), along(s - h), along(s + h)
+    height = [r.matrix(r.value) @ u for r in (before, after)]
+    difference = (height[1] - height[0]) / (2 * h)
+    np.testing.assert_allclose(rows.matrix(rows.slope) @ u, difference, atol=1e-6)
+
+
 def test_routes_turn_corners():
     route = Route(points=np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 4.0]]), law=ConstantSpeed(2.0))
     assert route.length == 7.0

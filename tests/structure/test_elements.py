@@ -85,6 +85,8 @@ def test_masses_move_as_rigid_bodies_do():
     inertia = rigid_motions(ends[0]).T @ mass @ rigid_motions(ends[0])
     m = 2450.0 * 0.21 * 2.0
     assert np.diag(inertia)[:3] == pytest.approx(m, rel=1e-12)
+    assert inertia[0, 4] == pytest.approx(m * -0.45, rel=1e-12)  # u_x = ry z of the centroid
+    assert inertia[1, 3] == pytest.approx(m * 0.45, rel=1e-12)
     about_x = m * 0.45**2 + 2450.0 * (section.inertia_y + section.inertia_z) * 2.0
     assert inertia[3, 3] == pytest.approx(about_x, rel=1e-12)
     # about y through the first node: m L^2/3 + m d^2 + rotary
@@ -225,6 +227,10 @@ def test_two_beams_with_an_offset_act_as_one_composite():
     assert u[floor.dof_index[-1, 2]] == pytest.approx(
         -moment * length**2 / (2 * rigidity), rel=1e-9
     )
+    # the neutral axis lies below the node, so the node moves along with the rotation: the side
+    # on which the web hangs is seen here alone
+    tip = floor.dof_index[-1]
+    assert u[tip[0]] == pytest.approx(-axis * u[tip[4]], rel=1e-9)
 
 
 def plate(thickness: float, edge: str, n: int, *, side: float = 1.0, nu: float = 0.3) -> Floor:

@@ -37,31 +37,32 @@ class Verdict:
         were computed and none does; ``not assessed`` otherwise.
     percentile : float
         Share of runs that the compared value covers, 0 to 100.
+    unresolved : tuple of float
+        Nominal frequencies of bands in the curve's range that were not computed [Hz].
+    averaging : str
+        Averaging rule of the value.
     margin : float
-        Smallest limit over value in the bands computed; below 1 fails. NaN if none was.
+        Smallest limit over value in the bands computed; below 1 fails. This and the rest are
+        NaN where nothing was computed.
     governing_band : float
         Mid-band frequency where the margin is smallest [Hz]; NaN for peak values.
     value, limit : float
         Value and limit there [m/s] or [m/s2].
     share_exceeding : float
         Share of the runs that exceed the limit in any band, 0 to 1.
-    unresolved : tuple of float
-        Nominal frequencies of bands in the curve's range that were not computed [Hz].
-    averaging : str
-        Averaging rule of the value.
     """
 
     criterion: Criterion
     point: str
     status: Status
     percentile: float
-    margin: float
-    governing_band: float
-    value: float
-    limit: float
-    share_exceeding: float
     unresolved: tuple[float, ...]
     averaging: str
+    margin: float = np.nan
+    governing_band: float = np.nan
+    value: float = np.nan
+    limit: float = np.nan
+    share_exceeding: float = np.nan
 
     def __str__(self) -> str:
         """State the verdict in one line."""
@@ -155,10 +156,10 @@ def _by_band(
     values = spectra.values[:, point]
     missing = tuple(nominal_frequency(f) for f in spectra.mid_band[asked & ~spectra.resolved])
     if not usable.any():
-        return _verdict(
-            criterion,
-            name,
-            "not assessed",
+        return Verdict(
+            criterion=criterion,
+            point=name,
+            status="not assessed",
             percentile=percentile,
             unresolved=missing,
             averaging=spectra.averaging,
@@ -171,10 +172,10 @@ def _by_band(
         status: Status = "fail"
     else:
         status = "not assessed" if missing else "pass"
-    return _verdict(
-        criterion,
-        name,
-        status,
+    return Verdict(
+        criterion=criterion,
+        point=name,
+        status=status,
         percentile=percentile,
         unresolved=missing,
         averaging=spectra.averaging,
@@ -190,10 +191,10 @@ def _by_peak(
     peaks: Float[Array, " runs"], point: str, criterion: Criterion, percentile: float, top: float
 ) -> Verdict:
     if criterion.axis == "horizontal":
-        return _verdict(
-            criterion,
-            point,
-            "not assessed",
+        return Verdict(
+            criterion=criterion,
+            point=point,
+            status="not assessed",
             percentile=percentile,
             unresolved=(),
             averaging="peak",
@@ -205,10 +206,10 @@ def _by_peak(
     reach = min(criterion.frequencies[-1], 80.0)
     missing = () if top >= reach * (1 - 1e-6) else (float(reach),)
     status: Status = "fail" if margin < 1.0 else ("not assessed" if missing else "pass")
-    return _verdict(
-        criterion,
-        point,
-        status,
+    return Verdict(
+        criterion=criterion,
+        point=point,
+        status=status,
         percentile=percentile,
         unresolved=missing,
         averaging="peak",
@@ -216,33 +217,4 @@ def _by_peak(
         value=value,
         limit=limit,
         share_exceeding=float((peaks > limit).mean()),
-    )
-
-
-def _verdict(
-    criterion: Criterion,
-    point: str,
-    status: Status,
-    *,
-    percentile: float,
-    unresolved: tuple[float, ...],
-    averaging: str,
-    margin: float = np.nan,
-    governing_band: float = np.nan,
-    value: float = np.nan,
-    limit: float = np.nan,
-    share_exceeding: float = np.nan,
-) -> Verdict:
-    return Verdict(
-        criterion=criterion,
-        point=point,
-        status=status,
-        percentile=percentile,
-        margin=margin,
-        governing_band=governing_band,
-        value=value,
-        limit=limit,
-        share_exceeding=share_exceeding,
-        unresolved=unresolved,
-        averaging=averaging,
     )

@@ -25,6 +25,7 @@ _BLOCK = 24
 _DENSE_LIMIT = 600
 _DENSE_FALLBACK = 6000
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any floor mode
+_USUAL_SUBSPACE = 2.3  # columns a mode takes to converge, for the progress bar
 _RIGID = 1e-4  # rad2/s2: an eigenvalue below this is a motion without strain
 
 
@@ -90,7 +91,7 @@ def natural_modes(
     allow_rigid : bool
         Accept motions without strain, as a free body has them.
     progress : callable, optional
-        Told the share of modes found so far, 0 to 1.
+        Told about how much of the work is done, 0 to 1.
 
     Returns
     -------
@@ -171,13 +172,13 @@ def _block_lanczos(
             errors = np.linalg.norm(last @ ritz[-_BLOCK:], axis=0)
             good = errors[: wanted + 1] <= 1e-11 * np.abs(nu[: wanted + 1])
             n_good = int(np.argmin(good)) if not good.all() else wanted + 1
-            if progress is not None:
-                progress(min(1.0, n_good / max(wanted, 1)))
             if n_good >= wanted:
                 return _pick(nu, basis[:, :size], ritz, wanted, f_max)
             next_look = int(1.12 * size)
         basis[:, size : size + _BLOCK] = block
         size += _BLOCK
+        if progress is not None:
+            progress(min(0.95, size / (_USUAL_SUBSPACE * wanted + 3 * _BLOCK)))
     raise ConvergenceError(
         f"{wanted} modes below {f_max:g} Hz wanted by inertia, but the iteration stopped "
         f"short with a subspace of {size}",
@@ -192,16 +193,11 @@ def _orthonormalise(mass: SparseMatrix, basis: Array, block: Array) -> tuple[Arr
     for _ in range(2):
         step = basis.T @ (mass @ block)
         block = block - basis @ step
-        overlap += triangle_product(step, triangle)
+        overlap += step @ triangle  # back on the scale of the original block
         lower = linalg.cholesky(block.T @ (mass @ block), lower=True)
         block = linalg.solve_triangular(lower, block.T, lower=True).T
         triangle = lower.T @ triangle
     return block, overlap, triangle
-
-
-def triangle_product(step: Array, triangle: Array) -> Array:
-    """Bring an overlap of a scaled block back to the scale of the original block."""
-    return step @ triangle
 
 
 def _pick(nu: Array, basis: Array, ritz: Array, wanted: int, f_max: float) -> tuple[Array, Array]:

@@ -16,12 +16,11 @@ from trundle.dynamics import (
     State,
 )
 from trundle.route import ContactRows
-from trundle.simulate._residual import StaticFlexibility, residual_block
+from trundle.simulate._residual import StaticFlexibility, residual_block, unit_loads
 
 __all__ = ["ContactFloor", "FullFloor", "ModalFloor", "RigidGround"]
 
 _CHUNK = 256  # steps whose contact shapes are formed at once
-_COLUMNS = 64  # right-hand sides solved at once
 
 Reading = tuple[Array, Array, Array]
 """Displacement, velocity and acceleration, each of shape (n_points, n_runs)."""
@@ -312,11 +311,8 @@ class FullFloor:
 
     def _unit_solutions(self) -> Array:
         out = np.empty((len(self._route_dofs), self._n_dofs))
-        for start in range(0, len(self._route_dofs), _COLUMNS):
-            dofs = self._route_dofs[start : start + _COLUMNS]
-            unit = np.zeros((self._n_dofs, len(dofs)))
-            unit[dofs, np.arange(len(dofs))] = 1.0
-            out[start : start + _COLUMNS] = self._propagator.respond(unit).displacement.T
+        for part, unit in unit_loads(self._route_dofs, self._n_dofs):
+            out[part] = self._propagator.respond(unit).displacement.T
         return out
 
     def _load(self, step: int, forces: Array) -> Array:

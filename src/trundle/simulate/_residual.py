@@ -15,6 +15,8 @@ R. R. Craig, Structural Dynamics (1981), section 15.2 (mode-acceleration method)
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from jaxtyping import Float, Int
 
@@ -23,9 +25,27 @@ from trundle.dynamics import Factor, Modes, factorise
 from trundle.route import ContactRows
 from trundle.structure import Floor
 
-__all__ = ["StaticFlexibility", "point_residual", "residual_block", "residual_motion"]
+__all__ = [
+    "StaticFlexibility",
+    "point_residual",
+    "residual_block",
+    "residual_motion",
+    "unit_loads",
+]
 
 _COLUMNS = 64  # right-hand sides solved at once
+
+
+def unit_loads(
+    dofs: Int[Array, " dofs"], n_dofs: int
+) -> Iterator[tuple[slice, Float[Array, "all columns"]]]:
+    """Give unit loads at dofs, a block of columns at a time, with the block's place."""
+    for start in range(0, len(dofs), _COLUMNS):
+        part = slice(start, start + _COLUMNS)
+        columns = dofs[part]
+        unit = np.zeros((n_dofs, len(columns)))
+        unit[columns, np.arange(len(columns))] = 1.0
+        yield part, unit
 
 
 class StaticFlexibility:
@@ -46,12 +66,9 @@ class StaticFlexibility:
         block = np.empty((len(union), len(union)))
         old_at, new_at = np.searchsorted(union, self._dofs), np.searchsorted(union, new)
         block[np.ix_(old_at, old_at)] = self._block
-        for start in range(0, len(new), _COLUMNS):
-            columns = new[start : start + _COLUMNS]
-            unit = np.zeros((self._floor.n_dofs, len(columns)))
-            unit[columns, np.arange(len(columns))] = 1.0
+        for part, unit in unit_loads(new, self._floor.n_dofs):
             solved = self.solve(unit)[union]
-            at = new_at[start : start + _COLUMNS]
+            at = new_at[part]
             block[:, at] = solved
             block[at] = solved.T
         self._dofs, self._block = union, block

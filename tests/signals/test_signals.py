@@ -114,6 +114,19 @@ def test_burst(averaging, level):
     assert computed == pytest.approx(level, abs=0.002)
 
 
+def test_a_record_that_ends_in_motion_is_no_click():
+    """A 4 Hz sine cut at its crest: the 63 Hz band stays 60 dB below, as without the cut."""
+    fs = 400.0
+    t = np.arange(0, 20.0625, 1 / fs)
+    ease = np.clip(t / 4, 0, 1)
+    sine = ease**2 * (3 - 2 * ease) * np.sin(2 * np.pi * 4 * t)
+    assert abs(sine[-1]) > 0.9
+    for rule in ("max_1s", "slow"):
+        level = band_levels(sine, fs, np.array([10**0.6, 10**1.8]), averaging=rule)
+        assert level[0] == pytest.approx(np.sqrt(0.5), rel=0.02)
+        assert level[1] < 1e-3 * level[0]
+
+
 def test_averaging_rules_on_a_step():
     """A constant 1 for 0.25 s: 0.5 over 1 s, sqrt(1 - e^-0.25) slow, by length over the event."""
     fs = 1000.0

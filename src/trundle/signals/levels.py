@@ -68,12 +68,12 @@ def band_levels(
 ) -> Float[Array, "bands ..."]:
     """Return the RMS of each signal in each one-third-octave band.
 
-    The signal must start and end near rest; the filters ring on into a second of silence
-    that is added at the end, except for ``event``, which averages over the record alone.
+    The signal must start near rest. Except for ``event``, which averages over the record
+    alone, the filters ring on into a second that fades out the record's end; a sudden end
+    would be a broadband event of its own.
     """
     if averaging != "event":
-        silence = [(0, 0)] * (samples.ndim - 1) + [(0, round(_WINDOW * sampling_frequency))]
-        samples = np.pad(samples, silence)
+        samples = _faded_out(samples, round(_WINDOW * sampling_frequency))
     return np.stack(
         [
             averaged_rms(
@@ -84,3 +84,12 @@ def band_levels(
             for f in mid_band
         ]
     )
+
+
+def _faded_out(samples: Array, n_steps: int) -> Array:
+    """Add the mirrored end of the record under half a cosine."""
+    n = min(n_steps, samples.shape[-1] - 1)
+    fade = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, n + 1) / n))
+    tail = samples[..., -2 : -2 - n : -1] * fade
+    rest = np.zeros((*samples.shape[:-1], n_steps - n))
+    return np.concatenate([samples, tail, rest], axis=-1)

@@ -2,13 +2,15 @@
 # make test      set up and run every check and test
 # make check     format, lint, layers, types and docstrings only
 # make fast      the tests without those marked slow
-# make validate  the published cases and the slow tests
+# make validate  every published case and the deliberate faults; writes docs/validation.md
+#                (make validate ONLY=V1 runs one case again and prints its rows)
+# make faults    put faults into a copy of the source; every one must make a test fail
 # make bench     speed, as ratios within one run
 # make docs      the reference of all public names, as HTML in build/docs
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help demo check test fast validate bench docs clean
+.PHONY: help demo check test fast validate faults bench docs clean
 .DEFAULT_GOAL := help
 
 help:
@@ -38,9 +40,18 @@ test: check
 fast: .venv/.ready-dev
 	$(BIN)/python -m pytest -n 2 -m "not slow"
 
+ifdef ONLY
 validate: .venv/.ready-dev
-	$(BIN)/python -m pytest -n 2 -v tests/validation
-	$(BIN)/python -m pytest -n 2 -v -m slow
+	$(BIN)/python -m pytest -n 2 -k "$(ONLY)" --record build/validation_only.json tests/validation
+else
+validate: .venv/.ready-dev
+	$(BIN)/python -m pytest -n 2 --record build/validation.json tests/validation
+	$(BIN)/python scripts/check_faults.py --json build/faults.json
+	$(BIN)/python scripts/validation_page.py build/validation.json build/faults.json
+endif
+
+faults: .venv/.ready-dev
+	$(BIN)/python scripts/check_faults.py --json build/faults.json
 
 bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/direct_step.py

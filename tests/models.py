@@ -25,7 +25,7 @@ def simple_beam(
     Rotary inertia is kept negligible by a small density on a large area.
     """
     inertia = rigidity / modulus
-    area = 1e4 * np.sqrt(inertia)
+    area = 1e8 * np.sqrt(inertia)
     material = Material(elastic_modulus=modulus, poisson_ratio=0.2, density=line_mass / area)
     section = BeamSection(
         area=area,

@@ -340,13 +340,13 @@ def test_same_seed_same_bits_and_more_runs_keep_the_first():
 
 def test_every_method_drives_over_the_same_road():
     """Entry, time step and companions do not change the road of a route and a run."""
-    from trundle.simulate._schedule import _profile_of, run_generator
+    from trundle.simulate._schedule import _profiles_of, run_generator
 
     heights = []
     for entry, dt in ((Ramp(length=1.0), 0.02), (DriveIn(length=3.0), 0.005)):
         way = crossing(entry=entry, run_in=7.3)
         timeline = lay_out((way,), dt, 3.0)
-        profile = _profile_of(way, 8.0, timeline, run_generator(1, "way", 0))
+        (profile,) = _profiles_of(way, np.zeros(1), 8.0, timeline, run_generator(1, "way", 0))
         heights.append(profile.at(np.linspace(-10.0, 20.0, 50))[0])
     np.testing.assert_allclose(heights[0], heights[1], rtol=1e-12)
 

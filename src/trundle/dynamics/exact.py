@@ -30,10 +30,13 @@ class Modal:
         All modes below this frequency are kept [Hz].
     dt : float
         Time step [s].
+    residual : bool
+        Add the static flexibility of the modes left out (True), or leave them out altogether.
     """
 
     f_max: float
     dt: float
+    residual: bool = True
 
     def __post_init__(self) -> None:
         """Check both numbers."""
@@ -41,8 +44,9 @@ class Modal:
 
     def __str__(self) -> str:
         """Describe the method for a report."""
+        rest = "" if self.residual else "nothing for the modes above, "
         return (
-            f"modal superposition, modes below {self.f_max:g} Hz, exact recursion, "
+            f"modal superposition, modes below {self.f_max:g} Hz, {rest}exact recursion, "
             f"dt = {1e3 * self.dt:g} ms"
         )
 

@@ -10,8 +10,10 @@ from trundle.road.iso8608 import (
     class_limits,
 )
 from trundle.road.profile import Profile
+from trundle.road.survey import RoughnessFit, classify, fit_roughness, roughness_index
 from trundle.road.synthesis import RoughnessBand, synthesise
 from trundle.road.temporal import temporal_psd, temporal_psd_two_sided
+from trundle.road.tracks import synthesise_tracks, track_coherence
 
 __all__ = [
     "CLASS_NAMES",
@@ -21,9 +23,15 @@ __all__ = [
     "Profile",
     "RoadClass",
     "RoughnessBand",
+    "RoughnessFit",
     "RoughnessLevel",
     "class_limits",
+    "classify",
+    "fit_roughness",
+    "roughness_index",
     "synthesise",
+    "synthesise_tracks",
     "temporal_psd",
     "temporal_psd_two_sided",
+    "track_coherence",
 ]

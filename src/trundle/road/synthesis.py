@@ -96,6 +96,13 @@ def synthesise(
     variance of the profile is exactly the band's at every length.
     """
     band = band or RoughnessBand()
+    n_samples, step, keep = layout(length, band, spacing)
+    spectrum, waves = draw_spectrum(road, band, n_samples, step, rng)
+    return profile_of(spectrum, waves, n_samples, step, keep=keep, start=start)
+
+
+def layout(length: float, band: RoughnessBand, spacing: float | None) -> tuple[int, float, int]:
+    """Return the samples in a period, their distance [m] and how many a road keeps."""
     length = positive("length", length)
     spacing = positive("spacing", spacing or 1.0 / (_SAMPLES_PER_WAVE * band.n_max))
     if spacing > 0.5 / band.n_max:
@@ -108,18 +115,24 @@ def synthesise(
     period = 1.01 * max(length, 1.0 / band.n_min)
     n_samples = int(fft.next_fast_len(int(np.ceil(period / spacing)) + 1, real=True))
     step = period / n_samples
-    spectrum, waves = _draw(road, band, n_samples, step, rng)
+    return n_samples, step, min(n_samples, int(np.ceil(length / step)) + 1)
+
+
+def profile_of(
+    spectrum: Array, waves: Array, n_samples: int, step: float, *, keep: int, start: float
+) -> Profile:
+    """Return the profile of a Fourier series, with the slope of the same series."""
     elevation = fft.irfft(spectrum, n_samples)
     slope = fft.irfft(2j * np.pi * waves * spectrum, n_samples)
-    keep = min(n_samples, int(np.ceil(length / step)) + 1)
     return Profile(
         station=start + step * np.arange(keep), elevation=elevation[:keep], slope=slope[:keep]
     )
 
 
-def _draw(
+def draw_spectrum(
     road: RoadClass, band: RoughnessBand, n_samples: int, step: float, rng: np.random.Generator
 ) -> tuple[Array, Array]:
+    """Return the Fourier coefficients of one random road, and their waves [cycle/m]."""
     resolution = 1.0 / (n_samples * step)
     waves = resolution * np.arange(n_samples // 2 + 1)
     low = np.clip(waves - 0.5 * resolution, band.n_min, band.n_max)

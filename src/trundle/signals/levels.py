@@ -14,11 +14,13 @@ from trundle.signals.bands import band_filter
 
 __all__ = ["Averaging", "averaged_rms", "band_levels", "running_rms"]
 
-Averaging: TypeAlias = Literal["max_1s", "slow", "event"]
+Averaging: TypeAlias = Literal["max_1s", "slow", "fast", "event"]
 """How a band's RMS is taken over time: the largest 1 s linear average, the largest
-exponential average with a time constant of 1 s, or one average over the whole event."""
+exponential average with a time constant of 1 s (slow) or 0.125 s (fast), or one average
+over the whole event."""
 
 _WINDOW = 1.0  # s
+_TIME_CONSTANT = {"slow": 1.0, "fast": 0.125}  # s, IEC 61672-1
 
 
 def running_rms(
@@ -46,7 +48,7 @@ def averaged_rms(
         Signals in time.
     sampling_frequency : float
         Samples per second [Hz].
-    averaging : {"max_1s", "slow", "event"}
+    averaging : {"max_1s", "slow", "fast", "event"}
         Rule, see `Averaging`.
     """
     one_of("averaging", averaging, get_args(Averaging))
@@ -54,9 +56,9 @@ def averaged_rms(
         return np.sqrt(np.mean(samples**2, axis=-1))
     if averaging == "max_1s":
         return running_rms(samples, sampling_frequency).max(axis=-1)
-    decay = np.exp(-1.0 / (_WINDOW * sampling_frequency))
-    slow = signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1)
-    return np.sqrt(slow.max(axis=-1))
+    decay = np.exp(-1.0 / (_TIME_CONSTANT[averaging] * sampling_frequency))
+    weighted = signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1)
+    return np.sqrt(weighted.max(axis=-1))
 
 
 def band_levels(

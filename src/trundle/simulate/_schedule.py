@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.road import Profile, synthesise
+from trundle.road import Profile, synthesise_tracks
 from trundle.route import ContactRows, ContactShape, StaticStart, contact_rows, deck_of
 from trundle.simulate.crossing import Crossing
 from trundle.structure import Floor
@@ -106,20 +106,24 @@ def roads_under_wheels(
         columns = slice(at, at + crossing.vehicle.n_contacts)
         at = columns.stop
         station, speed = timeline.station[:, columns], timeline.speed[:, columns]
+        tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
         for run in range(n_runs):
             rng = run_generator(seed, crossing.route.name, run)
-            profile = _profile_of(crossing, float(speed.max()), timeline, rng)
-            z, slope = profile.at(station)
-            elevation[:, columns, run] = z
-            rate[:, columns, run] = speed * slope
+            profiles = _profiles_of(crossing, tracks, float(speed.max()), timeline, rng)
+            for i, profile in enumerate(profiles):
+                under = np.flatnonzero(which == i)
+                z, slope = profile.at(station[:, under])
+                elevation[:, columns.start + under, run] = z
+                rate[:, columns.start + under, run] = speed[:, under] * slope
     return RoadUnderWheels(elevation=elevation, rate=rate)
 
 
-def _profile_of(
-    crossing: Crossing, speed: float, timeline: Timeline, rng: np.random.Generator
-) -> Profile:
+def _profiles_of(
+    crossing: Crossing, tracks: Array, speed: float, timeline: Timeline, rng: np.random.Generator
+) -> tuple[Profile, ...]:
+    """Return the profile of every wheel track; one given profile lies under all of them."""
     if isinstance(crossing.road, Profile):
-        return crossing.road
+        return (crossing.road,) * len(tracks)
     dt = float(timeline.time[1] - timeline.time[0])
     limit = 0.5 / (speed * dt)
     if crossing.band.n_max > limit * (1 + 1e-9):
@@ -130,8 +134,9 @@ def _profile_of(
             f"lower n_max to {limit:.3g} cycle/m"
         )
     low, high = _road_extent(crossing, float(timeline.time[-1]))
-    return synthesise(
+    return synthesise_tracks(
         crossing.road,
+        tracks,
         length=high - low,
         rng=rng,
         band=crossing.band,

@@ -76,6 +76,11 @@ class PreparedFloor:
     modes: Modes | None
     flexibility: StaticFlexibility
 
+    @property
+    def residual(self) -> bool:
+        """Whether the modes left out answer statically."""
+        return isinstance(self.integration, Modal) and self.integration.residual
+
 
 def prepare(
     floor: Floor,
@@ -208,7 +213,7 @@ def ensemble(
             static=isinstance(crossings[0].entry, StaticStart),
             progress=progress,
         )
-    if floor.modes is not None:
+    if floor.modes is not None and floor.residual:
         residual = point_residual(floor.flexibility, floor.modes, reader)
         record = record.plus(*residual_motion(rows, record.forces, residual, dt))
     return Runs(
@@ -309,7 +314,7 @@ def _contact_floor(
             rows,
             speed,
             points,
-            flexibility=prepared.flexibility if coupled else None,
+            flexibility=prepared.flexibility if coupled and prepared.residual else None,
         )
     return FullFloor(
         prepared.propagator,

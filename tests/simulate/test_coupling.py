@@ -60,7 +60,7 @@ def monolithic(floor, crossings, method, *, seed, duration):
     """
     dt = method.integration.dt
     timeline = lay_out(crossings, dt, duration)
-    road = roads_under_wheels(crossings, timeline, 1, seed)
+    road = roads_under_wheels(crossings, timeline, range(1), seed)
     rows = operator_rows(floor, crossings, timeline, method.contact)
     vehicle = crossings[0].vehicle
     n_contacts, n, nv = vehicle.n_contacts, floor.n_dofs, vehicle.system.n_dofs

@@ -40,7 +40,7 @@ def states_of_a_coupled_run(floor, crossing, method, duration):
     """Step the production solver and keep every state, which it does not do by itself."""
     prepared = prepare(floor, method.integration, method.damping)
     timeline = lay_out((crossing,), method.integration.dt, duration)
-    road = roads_under_wheels((crossing,), timeline, 1, 0)
+    road = roads_under_wheels((crossing,), timeline, range(1), 0)
     rows = operator_rows(floor, (crossing,), timeline, method.contact)
     law = _contact_law((crossing,), method.integration)
     carrier = _contact_floor(

@@ -2,7 +2,7 @@
 
 from trundle.dynamics.damping import Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
-from trundle.dynamics.exact import ExactPropagator, Modal, ModalPropagator
+from trundle.dynamics.exact import ExactRecursion, Modal, ModalRecursion
 from trundle.dynamics.newmark import Newmark, NewmarkPropagator
 from trundle.dynamics.sparse_solver import Factor, available_backends, factorise
 from trundle.dynamics.stepping import Motion, Propagator, State
@@ -10,11 +10,11 @@ from trundle.dynamics.system import LinearSystem, block_diagonal
 
 __all__ = [
     "Damping",
-    "ExactPropagator",
+    "ExactRecursion",
     "Factor",
     "LinearSystem",
     "Modal",
-    "ModalPropagator",
+    "ModalRecursion",
     "ModalRatio",
     "Modes",
     "Motion",

@@ -98,7 +98,7 @@ class NewmarkPropagator:
     def start(self, displacement: Float[Array, "dofs runs"]) -> State:
         """Return a state at rest, in equilibrium at the given displacement."""
         zero = np.zeros_like(displacement)
-        return State(displacement=displacement, velocity=zero, acceleration=zero, force=zero[:0])
+        return State(displacement=displacement, velocity=zero, acceleration=zero)
 
     def predict(self, state: State, force: Float[Array, "dofs runs"] | None = None) -> Motion:
         """Return the motion at the step's end under a known force there (none: zero)."""
@@ -125,7 +125,6 @@ class NewmarkPropagator:
             displacement=motion.displacement,
             velocity=motion.velocity,
             acceleration=self.a0 * (motion.displacement - u_hat),
-            force=state.force,
         )
 
     def _predictors(self, state: State) -> tuple[Array, Array]:

@@ -20,22 +20,19 @@ __all__ = ["Motion", "Propagator", "State"]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class State:
-    """Hold the motion of every run at one time, and the force that acts then.
+    """Hold the motion of every run at one time.
 
     Attributes
     ----------
     displacement, velocity : ndarray of float, shape (n_dofs, n_runs)
         Motion [m], [m/s] (or the same in generalised coordinates).
     acceleration : ndarray of float, shape (n_dofs, n_runs)
-        Acceleration [m/s2]; schemes that do not need it keep it empty.
-    force : ndarray of float, shape (n_dofs, n_runs)
-        Force at that time [N]; schemes that do not need it keep it empty.
+        Acceleration [m/s2].
     """
 
     displacement: Float[Array, "dofs runs"]
     velocity: Float[Array, "dofs runs"]
-    acceleration: Float[Array, "accelerated runs"]
-    force: Float[Array, "forced runs"]
+    acceleration: Float[Array, "dofs runs"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -3,7 +3,8 @@
 from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
 from trundle.simulate._residual import StaticFlexibility
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
-from trundle.simulate.ensemble import PreparedFloor, contact_forces, ensemble, prepare
+from trundle.simulate.ensemble import batches, contact_forces, ensemble
+from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import Runs
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "Rayleigh",
     "Runs",
     "StaticFlexibility",
+    "batches",
     "contact_forces",
     "ensemble",
     "prepare",

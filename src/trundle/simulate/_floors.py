@@ -1,4 +1,4 @@
-"""Offer a floor to the contact solver: rigid, in full coordinates, or in its modes."""
+"""Offer a floor to the stepwise contact solver: rigid, or in full coordinates."""
 
 from __future__ import annotations
 
@@ -8,19 +8,11 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import (
-    ModalPropagator,
-    Modes,
-    Motion,
-    NewmarkPropagator,
-    State,
-)
+from trundle.dynamics import Motion, NewmarkPropagator, State
 from trundle.route import ContactRows
-from trundle.simulate._residual import StaticFlexibility, residual_block, unit_loads
+from trundle.simulate._residual import StaticFlexibility, unit_loads
 
-__all__ = ["ContactFloor", "FullFloor", "ModalFloor", "RigidGround"]
-
-_CHUNK = 256  # steps whose contact shapes are formed at once
+__all__ = ["ContactFloor", "FullFloor", "RigidGround"]
 
 Reading = tuple[Array, Array, Array]
 """Displacement, velocity and acceleration, each of shape (n_points, n_runs)."""
@@ -76,7 +68,7 @@ class RigidGround:
     def start(self, n_runs: int, forces: Array | None) -> State:
         del forces
         empty = np.zeros((0, n_runs))
-        return State(displacement=empty, velocity=empty, acceleration=empty, force=empty)
+        return State(displacement=empty, velocity=empty, acceleration=empty)
 
     def predict(self, step: int, state: State, forces: Array | None) -> Motion:
         del step, forces
@@ -103,124 +95,6 @@ class RigidGround:
     def read(self, state: State) -> Reading:
         empty = np.zeros((0, state.displacement.shape[1]))
         return empty, empty, empty
-
-
-class ModalFloor:
-    """A floor in its modal coordinates."""
-
-    def __init__(
-        self,
-        modes: Modes,
-        propagator: ModalPropagator,
-        rows: ContactRows,
-        speed: Float[Array, "steps contacts"],
-        points: SparseMatrix,
-        *,
-        flexibility: StaticFlexibility | None,
-    ) -> None:
-        self._modes, self._propagator = modes, propagator
-        self._rows, self._speed = rows, speed
-        self._n = speed.shape[1]
-        self._load_share = rows.load_share.reshape(-1, self._n)
-        self._points = points @ modes.shapes
-        self._residual = (
-            None if flexibility is None else _Residual(rows, self._n, modes, flexibility)
-        )
-        self._chunk_start = -1
-        self._value = self._slope = np.zeros((0, 0, 0))
-
-    def start(self, n_runs: int, forces: Array | None) -> State:
-        q = np.zeros((self._modes.n_modes, n_runs))
-        if forces is not None:
-            q += self._load(0, forces) / (self._modes.omega**2)[:, None]
-        return self._propagator.start(q)
-
-    def predict(self, step: int, state: State, forces: Array | None) -> Motion:
-        if forces is None:
-            return self._propagator.predict(state)
-        return self._propagator.predict(state, self._load(step, forces))
-
-    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
-        value, slope = self._shapes_at(step)
-        convective = self._speed[step][:, None] * (slope @ motion.displacement)
-        rate = value @ motion.velocity + convective
-        if self._residual is not None:
-            # The residual rises from its depth a step ago, as a wheel feels it.
-            rate = rate + (self._residual.sinking(step - 1) @ before) / self._propagator.dt
-        return value @ motion.displacement, rate
-
-    def static_sinking(self) -> Array:
-        value, _ = self._shapes_at(0)
-        sinking = (value / self._modes.omega**2) @ value.T * self._load_share[0]
-        return sinking if self._residual is None else sinking + self._residual.sinking(0)
-
-    def compliance(self, step: int) -> tuple[Array, Array]:
-        value, slope = self._shapes_at(step)
-        unit = self._propagator.respond(self._load_share[step] * value.T)
-        convective = self._speed[step][:, None] * (slope @ unit.displacement)
-        sinking, rate = value @ unit.displacement, value @ unit.velocity + convective
-        if self._residual is not None:
-            extra = self._residual.sinking(step)
-            sinking, rate = sinking + extra, rate + extra / self._propagator.dt
-        return sinking, rate
-
-    def finish(
-        self, step: int, state: State, motion: Motion, forces: Array, *, applied: bool
-    ) -> State:
-        load = self._load(step, forces)
-        if not applied:
-            change = self._propagator.respond(load)
-            change.displacement[...] += motion.displacement
-            change.velocity[...] += motion.velocity
-            motion = change
-        return self._propagator.finish(state, motion, load)
-
-    def read(self, state: State) -> Reading:
-        points = self._points
-        acceleration = self._propagator.acceleration(points, state)
-        return points @ state.displacement, points @ state.velocity, acceleration
-
-    def _load(self, step: int, forces: Array) -> Array:
-        value, _ = self._shapes_at(step)
-        return -(value.T @ (self._load_share[step][:, None] * forces))
-
-    def _shapes_at(self, step: int) -> tuple[Array, Array]:
-        """Return mode shapes and their slopes under the wheels, (n_contacts, n_modes)."""
-        start = step - step % _CHUNK
-        if start != self._chunk_start:
-            part = self._rows.part(slice(start * self._n, (start + _CHUNK) * self._n))
-            shape = (-1, self._n, self._modes.n_modes)
-            self._value = (part.matrix(part.value) @ self._modes.shapes).reshape(shape)
-            self._slope = (part.matrix(part.slope) @ self._modes.shapes).reshape(shape)
-            self._chunk_start = start
-        return self._value[step - start], self._slope[step - start]
-
-
-class _Residual:
-    """The static flexibility of the modes left out, between the wheels."""
-
-    def __init__(
-        self, rows: ContactRows, n_wheels: int, modes: Modes, flexibility: StaticFlexibility
-    ) -> None:
-        dofs = rows.used_dofs()
-        self._block = residual_block(flexibility, modes, dofs)
-        at = np.minimum(np.searchsorted(dofs, rows.dofs), len(dofs) - 1)
-        shape = (-1, n_wheels, rows.dofs.shape[1])
-        self._at, self._value = at.reshape(shape), rows.value.reshape(shape)
-        self._load_share = rows.load_share.reshape(-1, n_wheels)
-        self._known: dict[int, Array] = {}
-
-    def sinking(self, step: int) -> Array:
-        """Return what the residual adds to the sinking under wheel i for a force of j."""
-        if step not in self._known:
-            at = self._at[step].ravel()
-            value = _spread(self._value[step])
-            block = self._block[np.ix_(at, at)]
-            sinking = value @ block @ value.T * self._load_share[step]
-            # A step asks for itself and for the one before it, and never for an older one.
-            self._known = {k: v for k, v in self._known.items() if k == step - 1}
-            self._known[step] = sinking
-        return self._known[step]
 
 
 def _spread(weights: Array) -> Array:

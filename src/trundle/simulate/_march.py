@@ -15,19 +15,26 @@ from trundle.errors import UnstableStepError
 from trundle.simulate._floors import ContactFloor, RigidGround
 from trundle.simulate._schedule import RoadUnderWheels, Timeline
 
-__all__ = ["ContactLaw", "Record", "drive", "load_floor", "run_in", "static_start"]
+__all__ = [
+    "ContactLaw",
+    "Progress",
+    "Record",
+    "Springs",
+    "drive",
+    "load_floor",
+    "run_in",
+    "static_start",
+]
 
 Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ContactLaw:
-    """Hold springs and dampers between vehicle and ground, and the vehicle beside them.
+class Springs:
+    """Hold springs and dampers between vehicle and ground.
 
     Attributes
     ----------
-    vehicle : Propagator
-        The vehicle without its contact springs, prepared for the time step.
     contact_map : ndarray of float, shape (n_contacts, n_dofs)
         Vehicle motion over each contact.
     stiffness, damping, static : ndarray of float, shape (n_contacts, 1)
@@ -36,12 +43,19 @@ class ContactLaw:
         Vehicle stiffness on rigid ground, contact springs included [N/m].
     """
 
-    vehicle: Propagator
     contact_map: Float[Array, "contacts dofs"]
     stiffness: Float[Array, "contacts 1"]
     damping: Float[Array, "contacts 1"]
     static: Float[Array, "contacts 1"]
     standing_stiffness: Float[Array, "dofs dofs"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactLaw:
+    """Hold a vehicle's contacts, and the vehicle beside them prepared for the time step."""
+
+    springs: Springs
+    vehicle: Propagator
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,11 +82,11 @@ def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[
 
     The vehicle starts at rest, in equilibrium on the road under its wheels.
     """
-    e, k = law.contact_map, law.stiffness
+    e, k = law.springs.contact_map, law.springs.stiffness
     ground = RigidGround(len(k))
     still = ground.start(road.elevation.shape[2], None)
-    z = linalg.solve(law.standing_stiffness, e.T @ (k * road.elevation[0]))
-    forces = law.static - k * (e @ z - road.elevation[0])
+    z = linalg.solve(law.springs.standing_stiffness, e.T @ (k * road.elevation[0]))
+    forces = law.springs.static - k * (e @ z - road.elevation[0])
     state = law.vehicle.start(z)
     for at in range(1, timeline.n_run_in + 1):
         state, _, forces = _step(law, ground, (state, still, forces), at, road, step=at)
@@ -87,12 +101,13 @@ def static_start(
     With S the floor's static sinking under unit forces, ``K_v z = E^T k (r - S f)`` and
     ``f = static - k (E z - r + S f)`` are solved together.
     """
-    e, k = law.contact_map, law.stiffness
+    springs = law.springs
+    e, k = springs.contact_map, springs.stiffness
     sink = floor.static_sinking()
     matrix = np.block(
-        [[law.standing_stiffness, e.T @ (k * sink)], [k * e, np.eye(len(k)) + k * sink]]
+        [[springs.standing_stiffness, e.T @ (k * sink)], [k * e, np.eye(len(k)) + k * sink]]
     )
-    right = np.vstack([e.T @ (k * road.elevation[0]), law.static + k * road.elevation[0]])
+    right = np.vstack([e.T @ (k * road.elevation[0]), springs.static + k * road.elevation[0]])
     solution = linalg.solve(matrix, right)
     z, forces = np.split(solution, [e.shape[1]])
     return law.vehicle.start(z), floor.start(forces.shape[1], forces), forces
@@ -157,7 +172,8 @@ def _step(
     The contact force is the unknown: with both motions linear in it, what is left is a
     system of n_contacts equations, the same for every run.
     """
-    e, k, c = law.contact_map, law.stiffness, law.damping
+    springs = law.springs
+    e, k, c = springs.contact_map, springs.stiffness, springs.damping
     vehicle_state, floor_state, before = state
     free = law.vehicle.predict(vehicle_state)
     motion = floor.predict(step, floor_state, None)
@@ -165,10 +181,10 @@ def _step(
     sink, sink_rate = floor.compliance(step)
     lift = law.vehicle.respond(e.T)
     stiff = k * (e @ lift.displacement + sink) + c * (e @ lift.velocity + sink_rate)
-    gap = e @ free.displacement - road.elevation[at] - height + sink @ law.static
-    gap_rate = e @ free.velocity - road.rate[at] - rate + sink_rate @ law.static
+    gap = e @ free.displacement - road.elevation[at] - height + sink @ springs.static
+    gap_rate = e @ free.velocity - road.rate[at] - rate + sink_rate @ springs.static
     dynamic = np.linalg.solve(np.eye(len(k)) + stiff, -(k * gap + c * gap_rate))
-    forces = law.static + dynamic
+    forces = springs.static + dynamic
     load = e.T @ dynamic
     change = law.vehicle.respond(load)
     vehicle_motion = Motion(

@@ -92,14 +92,14 @@ def _own_start(crossing: Crossing, dt: float) -> float:
 
 
 def roads_under_wheels(
-    crossings: tuple[Crossing, ...], timeline: Timeline, n_runs: int, seed: int
+    crossings: tuple[Crossing, ...], timeline: Timeline, runs: range, seed: int
 ) -> RoadUnderWheels:
     """Draw or read the road under every wheel.
 
     A crossing's road depends on the seed, its route's name and the run's number alone; so
     the truck of one route meets the same road whether it drives alone or with others.
     """
-    shape = (len(timeline.time), timeline.station.shape[1], n_runs)
+    shape = (len(timeline.time), timeline.station.shape[1], len(runs))
     elevation, rate = np.empty(shape), np.empty(shape)
     at = 0
     for crossing in crossings:
@@ -107,14 +107,14 @@ def roads_under_wheels(
         at = columns.stop
         station, speed = timeline.station[:, columns], timeline.speed[:, columns]
         tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
-        for run in range(n_runs):
+        for place, run in enumerate(runs):
             rng = run_generator(seed, crossing.route.name, run)
             profiles = _profiles_of(crossing, tracks, float(speed.max()), timeline, rng)
             for i, profile in enumerate(profiles):
                 under = np.flatnonzero(which == i)
                 z, slope = profile.at(station[:, under])
-                elevation[:, columns.start + under, run] = z
-                rate[:, columns.start + under, run] = speed[:, under] * slope
+                elevation[:, columns.start + under, place] = z
+                rate[:, columns.start + under, place] = speed[:, under] * slope
     return RoadUnderWheels(elevation=elevation, rate=rate)
 
 

@@ -2,143 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
-from scipy import sparse
-from threadpoolctl import ThreadpoolController
 
-from trundle._checks import count, positive
-from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import (
-    Damping,
-    ExactPropagator,
-    LinearSystem,
-    Modal,
-    ModalPropagator,
-    ModalRatio,
-    Modes,
-    Newmark,
-    NewmarkPropagator,
-    Propagator,
-    block_diagonal,
-    natural_modes,
-)
+from trundle._checks import count
+from trundle._typing import Array
+from trundle.dynamics import Modal
 from trundle.errors import InputError
-from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
-from trundle.simulate._floors import ContactFloor, FullFloor, ModalFloor, RigidGround
-from trundle.simulate._march import ContactLaw, Record, drive, load_floor, run_in, static_start
-from trundle.simulate._residual import StaticFlexibility, point_residual, residual_motion
-from trundle.simulate._schedule import (
-    RoadUnderWheels,
-    Timeline,
-    lay_out,
-    operator_rows,
-    roads_under_wheels,
-)
-from trundle.simulate.crossing import Coupled, Crossing, Integration, Interaction
+from trundle.simulate._drive import Drive, lay_out_drive, rigid_drive
+from trundle.simulate._schedule import roads_under_wheels
+from trundle.simulate.crossing import Crossing, Integration, Interaction
 from trundle.simulate.fitness import fitness_warnings
+from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import Runs
 from trundle.structure import Floor
 
-__all__ = ["PreparedFloor", "contact_forces", "ensemble", "prepare"]
+__all__ = ["batches", "contact_forces", "ensemble"]
 
 Progress = Callable[[float], None]
 
-_TAIL = 5.0  # s of free decay after the last wheel has left, unless a duration is given
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PreparedFloor:
-    """Hold a floor with what its integration needs: modes, or a factorised matrix.
-
-    Attributes
-    ----------
-    floor : Floor
-        The floor.
-    integration : Newmark or Modal
-        Time integration it is prepared for.
-    damping : Rayleigh or ModalRatio
-        Damping it is prepared for.
-    propagator : NewmarkPropagator or ModalPropagator
-        The scheme with its coefficients.
-    modes : Modes or None
-        Natural modes, for `Modal`; a full floor has none.
-    flexibility : StaticFlexibility
-        Static deflections, for starts at rest and for the modes left out.
-    """
-
-    floor: Floor
-    integration: Integration
-    damping: Damping
-    propagator: NewmarkPropagator | ModalPropagator
-    modes: Modes | None
-    flexibility: StaticFlexibility
-
-    @property
-    def residual(self) -> bool:
-        """Whether the modes left out answer statically."""
-        return isinstance(self.integration, Modal) and self.integration.residual
-
-
-def prepare(
-    floor: Floor,
-    integration: Integration,
-    damping: Damping,
-    *,
-    modes: Modes | None = None,
-    flexibility: StaticFlexibility | None = None,
-    progress: Progress | None = None,
-) -> PreparedFloor:
-    """Find modes, or factorise, once for all crossings of a floor.
-
-    Parameters
-    ----------
-    floor : Floor
-        The floor.
-    integration : Newmark or Modal
-        Time integration.
-    damping : Rayleigh or ModalRatio
-        Damping of the floor.
-    modes : Modes, optional
-        Modes found before; they must reach as far as `integration` asks.
-    flexibility : StaticFlexibility, optional
-        Static deflections of the same floor found before.
-    progress : callable, optional
-        Told the share of modes found.
-    """
-    flexibility = flexibility or StaticFlexibility(floor)
-    if isinstance(integration, Modal):
-        if modes is None or modes.f_max < integration.f_max:
-            modes = natural_modes(
-                floor.mass, floor.stiffness, f_max=integration.f_max, progress=progress
-            )
-        modes = _below(modes, integration.f_max)
-        ratios = damping.ratios(modes.omega)
-        propagator = ModalPropagator(modes.omega, ratios, integration.dt)
-        return PreparedFloor(
-            floor=floor,
-            integration=integration,
-            damping=damping,
-            propagator=propagator,
-            modes=modes,
-            flexibility=flexibility,
-        )
-    matrix = (
-        0.0 * floor.mass
-        if isinstance(damping, ModalRatio)
-        else damping.matrix(floor.mass, floor.stiffness)
-    )
-    system = LinearSystem(mass=floor.mass, damping=matrix, stiffness=floor.stiffness)
-    return PreparedFloor(
-        floor=floor,
-        integration=integration,
-        damping=damping,
-        propagator=NewmarkPropagator(system, integration),
-        modes=None,
-        flexibility=flexibility,
-    )
+_BATCH_BYTES = 256e6  # histories and roads held at once
+_MOST_RUNS = 1024  # in a batch; more would gain nothing
 
 
 def ensemble(
@@ -185,50 +70,75 @@ def ensemble(
     UnstableStepError
         A number stopped being finite.
     """
-    crossings = _as_tuple(crossings)
-    n_runs = count("n_runs", n_runs)
+    whole = batches(
+        floor, crossings, method=method, points=points, runs=range(count("n_runs", n_runs)),
+        seed=seed, duration=duration, batch=n_runs, progress=progress,
+    )  # fmt: skip
+    return next(whole)
+
+
+def batches(
+    floor: Floor | PreparedFloor,
+    crossings: Crossing | Sequence[Crossing],
+    *,
+    method: Interaction,
+    points: Mapping[str, tuple[float, float]],
+    runs: range,
+    seed: int,
+    duration: float | None = None,
+    batch: int | None = None,
+    progress: Progress | None = None,
+) -> Iterator[Runs]:
+    """Run an ensemble batch by batch, so that memory does not grow with the number of runs.
+
+    Parameters
+    ----------
+    floor, crossings, method, points, seed, duration, progress
+        As in `ensemble`.
+    runs : range
+        Numbers of the runs; a run's road depends on the seed and its number alone.
+    batch : int, optional
+        Runs in a batch; as many as 256 MB of histories hold unless given.
+
+    Yields
+    ------
+    Runs
+        The next runs, with their histories.
+    """
+    many = _as_tuple(crossings)
     if not points:
         raise InputError("name at least one point where the response is to be read")
     if isinstance(floor, Floor):
         floor = prepare(floor, method.integration, method.damping)
-    _check_prepared(floor, method)
-    dt = method.integration.dt
-    length = duration if duration is not None else _natural_duration(crossings)
-    timeline = lay_out(crossings, dt, positive("duration", length))
-    road = roads_under_wheels(crossings, timeline, n_runs, seed)
-    rows = operator_rows(floor.floor, crossings, timeline, method.contact)
-    law = _contact_law(crossings, method.integration)
-    coupled = isinstance(method, Coupled)
-    reader = _point_rows(floor.floor, points)
-    contact_floor = _contact_floor(floor, rows, timeline, reader, coupled=coupled)
-    # The steps' products are small; threads that wait for them would only take the cores
-    # from the sparse solver, which has threads of its own.
-    with ThreadpoolController().select(internal_api="openblas").limit(limits=1):
-        record = _run(
-            contact_floor,
-            law,
-            timeline,
-            road,
-            coupled=coupled,
-            static=isinstance(crossings[0].entry, StaticStart),
-            progress=progress,
+    drive = lay_out_drive(floor, many, method=method, points=points, duration=duration)
+    size = batch or batch_size(drive, len(points))
+    done, total = 0, len(runs)
+    for start in range(0, total, size):
+        part = runs[start : start + size]
+        road = roads_under_wheels(many, drive.timeline, part, seed)
+        share = (done / total, len(part) / total)
+        record = drive.over(road, progress=_part_of(progress, *share))
+        yield Runs(
+            time=drive.time,
+            displacement=np.transpose(record.displacement, (2, 0, 1)),
+            velocity=np.transpose(record.velocity, (2, 0, 1)),
+            acceleration=np.transpose(record.acceleration, (2, 0, 1)),
+            contact_forces=np.transpose(record.forces, (2, 0, 1)),
+            point_names=tuple(points),
+            contact_names=contact_names(many),
+            seed=seed,
+            method=str(method),
+            f_max=highest_frequency(method.integration),
+            warnings=fitness_warnings(many, method, floor.floor, floor.modes, record.forces),
         )
-    if floor.modes is not None and floor.residual:
-        residual = point_residual(floor.flexibility, floor.modes, reader)
-        record = record.plus(*residual_motion(rows, record.forces, residual, dt))
-    return Runs(
-        time=timeline.time[timeline.n_run_in :],
-        displacement=np.transpose(record.displacement, (2, 0, 1)),
-        velocity=np.transpose(record.velocity, (2, 0, 1)),
-        acceleration=np.transpose(record.acceleration, (2, 0, 1)),
-        contact_forces=np.transpose(record.forces, (2, 0, 1)),
-        point_names=tuple(points),
-        contact_names=_contact_names(crossings),
-        seed=seed,
-        method=str(method),
-        f_max=_highest_frequency(method.integration),
-        warnings=fitness_warnings(crossings, method, floor.floor, floor.modes, record.forces),
-    )
+        done += len(part)
+
+
+def batch_size(drive: Drive, n_points: int) -> int:
+    """Return how many runs 256 MB hold, a number that does not depend on the machine."""
+    n_all, n_contacts = drive.timeline.station.shape
+    values = 2 * n_all * n_contacts + len(drive.time) * (3 * n_points + n_contacts)
+    return int(np.clip(_BATCH_BYTES / (8.0 * values), 16, _MOST_RUNS))
 
 
 def contact_forces(
@@ -243,136 +153,19 @@ def contact_forces(
     forces : ndarray of float, shape (n_runs, n_steps, n_contacts)
         Static and dynamic together, positive when pressing on the ground.
     """
-    timeline = lay_out((crossing,), integration.dt, duration)
-    road = roads_under_wheels((crossing,), timeline, n_runs, seed)
-    record = _on_rigid_ground(_contact_law((crossing,), integration), timeline, road)
-    return timeline.time[timeline.n_run_in :], np.transpose(record.forces, (2, 0, 1))
+    drive = rigid_drive(crossing, integration, duration)
+    road = roads_under_wheels((crossing,), drive.timeline, range(n_runs), seed)
+    return drive.time, np.transpose(drive.over(road).forces, (2, 0, 1))
 
 
-def _run(
-    floor: ContactFloor,
-    law: ContactLaw,
-    timeline: Timeline,
-    road: RoadUnderWheels,
-    *,
-    coupled: bool,
-    static: bool,
-    progress: Progress | None,
-) -> Record:
-    if not coupled:
-        forces = _on_rigid_ground(law, timeline, road).forces
-        return load_floor(floor, forces, timeline, static=static, progress=progress)
-    if static:
-        start = static_start(law, floor, road)
-        return drive(law, floor, start, timeline, road, progress=progress)
-    vehicle, forces = run_in(law, timeline, road)
-    still = floor.start(road.elevation.shape[2], None)
-    return drive(law, floor, (vehicle, still, forces), timeline, road, progress=progress)
-
-
-def _on_rigid_ground(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> Record:
-    ground = RigidGround(len(law.stiffness))
-    vehicle, forces = run_in(law, timeline, road)
-    still = ground.start(road.elevation.shape[2], None)
-    return drive(law, ground, (vehicle, still, forces), timeline, road)
-
-
-def _contact_law(crossings: tuple[Crossing, ...], integration: Integration) -> ContactLaw:
-    vehicles = [crossing.vehicle for crossing in crossings]
-    free = block_diagonal(tuple(vehicle.free_system for vehicle in vehicles))
-    propagator: Propagator = (
-        NewmarkPropagator(free, integration)
-        if isinstance(integration, Newmark)
-        else ExactPropagator(free, integration.dt)
-    )
-    return ContactLaw(
-        vehicle=propagator,
-        contact_map=np.asarray(sparse.block_diag([v.contact_map for v in vehicles]).toarray()),
-        stiffness=np.concatenate([v.contact_stiffness for v in vehicles])[:, None],
-        damping=np.concatenate([v.contact_damping for v in vehicles])[:, None],
-        static=np.concatenate([v.static_forces for v in vehicles])[:, None],
-        standing_stiffness=np.asarray(
-            block_diagonal(tuple(vehicle.system for vehicle in vehicles)).stiffness
-        ),
-    )
-
-
-def _contact_floor(
-    prepared: PreparedFloor,
-    rows: ContactRows,
-    timeline: Timeline,
-    points: SparseMatrix,
-    *,
-    coupled: bool,
-) -> ContactFloor:
-    speed = timeline.speed[timeline.n_run_in :]
-    if isinstance(prepared.propagator, ModalPropagator):
-        assert prepared.modes is not None  # a modal propagator is only made with modes
-        return ModalFloor(
-            prepared.modes,
-            prepared.propagator,
-            rows,
-            speed,
-            points,
-            flexibility=prepared.flexibility if coupled and prepared.residual else None,
-        )
-    return FullFloor(
-        prepared.propagator,
-        rows,
-        speed,
-        points,
-        flexibility=prepared.flexibility,
-        coupled=coupled,
-    )
-
-
-def _point_rows(floor: Floor, points: Mapping[str, tuple[float, float]]) -> SparseMatrix:
-    places = np.array(list(points.values()), dtype=float).reshape(-1, 2)
-    along_x = np.broadcast_to([1.0, 0.0], places.shape)
-    rows = contact_rows(floor, places, along_x, shape=Hermite())
-    return rows.matrix(rows.value)
-
-
-def _below(modes: Modes, f_max: float) -> Modes:
-    keep = int(np.searchsorted(modes.frequencies, f_max))
-    if keep == 0:
-        raise InputError(f"no mode lies below f_max = {f_max:g} Hz; raise f_max")
-    return Modes(
-        omega=modes.omega[:keep],
-        shapes=modes.shapes[:, :keep],
-        residuals=modes.residuals[:keep],
-        f_max=f_max,
-    )
-
-
-def _highest_frequency(integration: Integration) -> float:
+def highest_frequency(integration: Integration) -> float:
+    """Return the highest frequency that a computation contains [Hz]."""
     nyquist = 0.5 / integration.dt
     return min(integration.f_max, nyquist) if isinstance(integration, Modal) else nyquist
 
 
-def _as_tuple(crossings: Crossing | Sequence[Crossing]) -> tuple[Crossing, ...]:
-    many = (crossings,) if isinstance(crossings, Crossing) else tuple(crossings)
-    if not many:
-        raise InputError("an ensemble needs at least one crossing")
-    return many
-
-
-def _check_prepared(prepared: PreparedFloor, method: Interaction) -> None:
-    if (prepared.integration, prepared.damping) != (method.integration, method.damping):
-        raise InputError(
-            f"the floor is prepared for {prepared.integration} with {prepared.damping}; "
-            f"the method asks for {method.integration} with {method.damping}"
-        )
-
-
-def _natural_duration(crossings: tuple[Crossing, ...]) -> float:
-    last = max(crossing.exit_time for crossing in crossings)
-    if not np.isfinite(last):
-        raise InputError("a vehicle stops on its route; give a duration")
-    return last + _TAIL
-
-
-def _contact_names(crossings: tuple[Crossing, ...]) -> tuple[str, ...]:
+def contact_names(crossings: tuple[Crossing, ...]) -> tuple[str, ...]:
+    """Return the names of all contacts, with their route's where several drive."""
     if len(crossings) == 1:
         return crossings[0].vehicle.contact_names
     return tuple(
@@ -380,3 +173,16 @@ def _contact_names(crossings: tuple[Crossing, ...]) -> tuple[str, ...]:
         for crossing in crossings
         for name in crossing.vehicle.contact_names
     )
+
+
+def _part_of(progress: Progress | None, start: float, length: float) -> Progress | None:
+    if progress is None:
+        return None
+    return lambda share: progress(start + length * share)
+
+
+def _as_tuple(crossings: Crossing | Sequence[Crossing]) -> tuple[Crossing, ...]:
+    many = (crossings,) if isinstance(crossings, Crossing) else tuple(crossings)
+    if not many:
+        raise InputError("an ensemble needs at least one crossing")
+    return many

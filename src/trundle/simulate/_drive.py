@@ -1,0 +1,250 @@
+"""Lay out a set of crossings over a prepared floor, and drive them over any roads."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+from scipy import sparse
+from threadpoolctl import ThreadpoolController
+
+from trundle._checks import positive
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import (
+    ExactRecursion,
+    LinearSystem,
+    ModalRecursion,
+    Newmark,
+    NewmarkPropagator,
+    block_diagonal,
+)
+from trundle.errors import InputError
+from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
+from trundle.simulate._block_march import Steps, drive_in_blocks
+from trundle.simulate._floors import FullFloor, RigidGround
+from trundle.simulate._march import (
+    ContactLaw,
+    Progress,
+    Record,
+    Springs,
+    drive,
+    load_floor,
+    run_in,
+    static_start,
+)
+from trundle.simulate._modal_floor import ModalFloor
+from trundle.simulate._residual import point_residual, residual_motion
+from trundle.simulate._schedule import RoadUnderWheels, Timeline, lay_out, operator_rows
+from trundle.simulate.crossing import Coupled, Crossing, Integration, Interaction
+from trundle.simulate.prepared import PreparedFloor
+from trundle.structure import Floor
+
+__all__ = ["Drive", "lay_out_drive", "rigid_drive"]
+
+_TAIL = 5.0  # s of free decay after the last wheel has left, unless a duration is given
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Drive:
+    """Hold what all runs of an ensemble share: everything but the road.
+
+    Attributes
+    ----------
+    crossings : tuple of Crossing
+        Who drives where.
+    integration : Newmark or Modal
+        Time integration.
+    timeline : Timeline
+        Where the wheels are.
+    floor : ModalFloor, FullFloor or None
+        The floor under the wheels; None is rigid ground.
+    residual : tuple of ContactRows and ndarray, or None
+        Rows of the contacts, and static flexibility of the modes left out at the points.
+    coupled : bool
+        Whether the floor moves under the wheels.
+    """
+
+    crossings: tuple[Crossing, ...]
+    integration: Integration
+    timeline: Timeline
+    floor: ModalFloor | FullFloor | None
+    residual: tuple[ContactRows, Array] | None
+    coupled: bool
+
+    @property
+    def time(self) -> Float[Array, " steps"]:
+        """Time of the record [s]."""
+        return self.timeline.time[self.timeline.n_run_in :]
+
+    @property
+    def static(self) -> bool:
+        """Whether the record starts in static equilibrium."""
+        return isinstance(self.crossings[0].entry, StaticStart)
+
+    def over(
+        self,
+        road: RoadUnderWheels,
+        *,
+        weight: Float[Array, " runs"] | None = None,
+        progress: Progress | None = None,
+    ) -> Record:
+        """Drive over a road for every run; `weight` scales each run's static wheel loads."""
+        n_runs = road.elevation.shape[2]
+        weight = np.ones(n_runs) if weight is None else weight
+        # Work is shared out in columns or by the sparse solver; threads of small products that
+        # wait for each other would only take the cores.
+        with ThreadpoolController().select(internal_api="openblas").limit(limits=1):
+            if isinstance(self.integration, Newmark):
+                record = self._step_by_step(road, progress)
+            else:
+                record = drive_in_blocks(
+                    Steps(
+                        springs=_springs(self.crossings),
+                        vehicle=ExactRecursion(_free_vehicles(self.crossings), self.integration.dt),
+                        timeline=self.timeline,
+                    ),
+                    self.floor if isinstance(self.floor, ModalFloor) else None,
+                    road,
+                    weight=weight,
+                    coupled=self.coupled,
+                    static=self.static,
+                    progress=progress,
+                )
+        if self.residual is not None:
+            rows, residual = self.residual
+            dt = self.integration.dt
+            record = record.plus(*residual_motion(rows, record.forces, residual, dt))
+        return record
+
+    def _step_by_step(self, road: RoadUnderWheels, progress: Progress | None) -> Record:
+        assert isinstance(self.integration, Newmark)  # the caller has looked
+        law = ContactLaw(
+            springs=_springs(self.crossings),
+            vehicle=NewmarkPropagator(_free_vehicles(self.crossings), self.integration),
+        )
+        floor, timeline = self.floor, self.timeline
+        if not isinstance(floor, FullFloor) or not self.coupled:
+            ground = RigidGround(len(law.springs.static))
+            vehicle, forces = run_in(law, timeline, road)
+            still = ground.start(road.elevation.shape[2], None)
+            rigid = drive(law, ground, (vehicle, still, forces), timeline, road)
+            if not isinstance(floor, FullFloor):
+                return rigid
+            return load_floor(floor, rigid.forces, timeline, static=self.static, progress=progress)
+        if self.static:
+            start = static_start(law, floor, road)
+            return drive(law, floor, start, timeline, road, progress=progress)
+        vehicle, forces = run_in(law, timeline, road)
+        still = floor.start(road.elevation.shape[2], None)
+        return drive(law, floor, (vehicle, still, forces), timeline, road, progress=progress)
+
+
+def lay_out_drive(
+    prepared: PreparedFloor,
+    crossings: tuple[Crossing, ...],
+    *,
+    method: Interaction,
+    points: Mapping[str, tuple[float, float]],
+    duration: float | None,
+) -> Drive:
+    """Lay out crossings over a prepared floor."""
+    _check_prepared(prepared, method)
+    dt = method.integration.dt
+    length = duration if duration is not None else _natural_duration(crossings)
+    timeline = lay_out(crossings, dt, positive("duration", length))
+    rows = operator_rows(prepared.floor, crossings, timeline, method.contact)
+    reader = _point_rows(prepared.floor, points)
+    coupled = isinstance(method, Coupled)
+    residual = None
+    if prepared.modes is not None and prepared.residual:
+        residual = (rows, point_residual(prepared.flexibility, prepared.modes, reader))
+    return Drive(
+        crossings=crossings,
+        integration=method.integration,
+        timeline=timeline,
+        floor=_floor_under_wheels(prepared, rows, timeline, reader, coupled=coupled),
+        residual=residual,
+        coupled=coupled,
+    )
+
+
+def rigid_drive(crossing: Crossing, integration: Integration, duration: float) -> Drive:
+    """Lay out a crossing over rigid ground."""
+    return Drive(
+        crossings=(crossing,),
+        integration=integration,
+        timeline=lay_out((crossing,), integration.dt, duration),
+        floor=None,
+        residual=None,
+        coupled=False,
+    )
+
+
+def _floor_under_wheels(
+    prepared: PreparedFloor,
+    rows: ContactRows,
+    timeline: Timeline,
+    points: SparseMatrix,
+    *,
+    coupled: bool,
+) -> ModalFloor | FullFloor:
+    speed = timeline.speed[timeline.n_run_in :]
+    if isinstance(prepared.propagator, ModalRecursion):
+        assert prepared.modes is not None  # a modal recursion is only made with modes
+        return ModalFloor(
+            prepared.modes,
+            prepared.propagator,
+            rows,
+            speed,
+            points,
+            flexibility=prepared.flexibility if coupled and prepared.residual else None,
+        )
+    return FullFloor(
+        prepared.propagator,
+        rows,
+        speed,
+        points,
+        flexibility=prepared.flexibility,
+        coupled=coupled,
+    )
+
+
+def _springs(crossings: tuple[Crossing, ...]) -> Springs:
+    vehicles = [crossing.vehicle for crossing in crossings]
+    return Springs(
+        contact_map=np.asarray(sparse.block_diag([v.contact_map for v in vehicles]).toarray()),
+        stiffness=np.concatenate([v.contact_stiffness for v in vehicles])[:, None],
+        damping=np.concatenate([v.contact_damping for v in vehicles])[:, None],
+        static=np.concatenate([v.static_forces for v in vehicles])[:, None],
+        standing_stiffness=np.asarray(
+            block_diagonal(tuple(vehicle.system for vehicle in vehicles)).stiffness
+        ),
+    )
+
+
+def _free_vehicles(crossings: tuple[Crossing, ...]) -> LinearSystem:
+    return block_diagonal(tuple(crossing.vehicle.free_system for crossing in crossings))
+
+
+def _point_rows(floor: Floor, points: Mapping[str, tuple[float, float]]) -> SparseMatrix:
+    places = np.array(list(points.values()), dtype=float).reshape(-1, 2)
+    along_x = np.broadcast_to([1.0, 0.0], places.shape)
+    rows = contact_rows(floor, places, along_x, shape=Hermite())
+    return rows.matrix(rows.value)
+
+
+def _check_prepared(prepared: PreparedFloor, method: Interaction) -> None:
+    if (prepared.integration, prepared.damping) != (method.integration, method.damping):
+        raise InputError(
+            f"the floor is prepared for {prepared.integration} with {prepared.damping}; "
+            f"the method asks for {method.integration} with {method.damping}"
+        )
+
+
+def _natural_duration(crossings: tuple[Crossing, ...]) -> float:
+    last = max(crossing.exit_time for crossing in crossings)
+    if not np.isfinite(last):
+        raise InputError("a vehicle stops on its route; give a duration")
+    return last + _TAIL

@@ -1,0 +1,131 @@
+"""Prepare a floor once for all crossings: find its modes, or factorise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from trundle.dynamics import (
+    Damping,
+    LinearSystem,
+    Modal,
+    ModalRatio,
+    ModalRecursion,
+    Modes,
+    NewmarkPropagator,
+    natural_modes,
+)
+from trundle.errors import InputError
+from trundle.simulate._residual import StaticFlexibility
+from trundle.simulate.crossing import Integration
+from trundle.structure import Floor
+
+__all__ = ["PreparedFloor", "prepare"]
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PreparedFloor:
+    """Hold a floor with what its integration needs: modes, or a factorised matrix.
+
+    Attributes
+    ----------
+    floor : Floor
+        The floor.
+    integration : Newmark or Modal
+        Time integration it is prepared for.
+    damping : Rayleigh or ModalRatio
+        Damping it is prepared for.
+    propagator : NewmarkPropagator or ModalRecursion
+        The scheme with its coefficients.
+    modes : Modes or None
+        Natural modes, for `Modal`; a full floor has none.
+    flexibility : StaticFlexibility
+        Static deflections, for starts at rest and for the modes left out.
+    """
+
+    floor: Floor
+    integration: Integration
+    damping: Damping
+    propagator: NewmarkPropagator | ModalRecursion
+    modes: Modes | None
+    flexibility: StaticFlexibility
+
+    @property
+    def residual(self) -> bool:
+        """Whether the modes left out answer statically."""
+        return isinstance(self.integration, Modal) and self.integration.residual
+
+
+def prepare(
+    floor: Floor,
+    integration: Integration,
+    damping: Damping,
+    *,
+    modes: Modes | None = None,
+    flexibility: StaticFlexibility | None = None,
+    progress: Progress | None = None,
+) -> PreparedFloor:
+    """Find modes, or factorise, once for all crossings of a floor.
+
+    Parameters
+    ----------
+    floor : Floor
+        The floor.
+    integration : Newmark or Modal
+        Time integration.
+    damping : Rayleigh or ModalRatio
+        Damping of the floor.
+    modes : Modes, optional
+        Modes found before; they must reach as far as `integration` asks.
+    flexibility : StaticFlexibility, optional
+        Static deflections of the same floor found before.
+    progress : callable, optional
+        Told the share of modes found.
+    """
+    flexibility = flexibility or StaticFlexibility(floor)
+    if isinstance(integration, Modal):
+        if modes is None or modes.f_max < integration.f_max:
+            modes = natural_modes(
+                floor.mass, floor.stiffness, f_max=integration.f_max, progress=progress
+            )
+        modes = _below(modes, integration.f_max)
+        ratios = damping.ratios(modes.omega)
+        propagator = ModalRecursion(modes.omega, ratios, integration.dt)
+        return PreparedFloor(
+            floor=floor,
+            integration=integration,
+            damping=damping,
+            propagator=propagator,
+            modes=modes,
+            flexibility=flexibility,
+        )
+    matrix = (
+        0.0 * floor.mass
+        if isinstance(damping, ModalRatio)
+        else damping.matrix(floor.mass, floor.stiffness)
+    )
+    system = LinearSystem(mass=floor.mass, damping=matrix, stiffness=floor.stiffness)
+    return PreparedFloor(
+        floor=floor,
+        integration=integration,
+        damping=damping,
+        propagator=NewmarkPropagator(system, integration),
+        modes=None,
+        flexibility=flexibility,
+    )
+
+
+def _below(modes: Modes, f_max: float) -> Modes:
+    keep = int(np.searchsorted(modes.frequencies, f_max))
+    if keep == 0:
+        raise InputError(f"no mode lies below f_max = {f_max:g} Hz; raise f_max")
+    return Modes(
+        omega=modes.omega[:keep],
+        shapes=modes.shapes[:, :keep],
+        residuals=modes.residuals[:keep],
+        f_max=f_max,
+    )

@@ -4,17 +4,30 @@ Superposition of trucks, the mirrored route, half models and equal bits for equa
 in tests/simulate.
 """
 
+import itertools
+
 import numpy as np
 import pytest
+from scipy import sparse
 
 from models import small_floor
-from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
+from trundle.dynamics import (
+    ExactRecursion,
+    Modal,
+    ModalRatio,
+    Newmark,
+    NewmarkPropagator,
+    Rayleigh,
+)
 from trundle.road import Profile
 from trundle.route import DriveIn, Hermite, Route
 from trundle.simulate import Coupled, Crossing, ensemble, prepare
 from trundle.simulate import _march as march
+from trundle.simulate._block_march import Steps, drive_in_blocks
+from trundle.simulate._drive import _springs
+from trundle.simulate._floors import FullFloor
+from trundle.simulate._modal_floor import ModalFloor
 from trundle.simulate._schedule import lay_out, operator_rows, roads_under_wheels
-from trundle.simulate.ensemble import _contact_floor, _contact_law, _point_rows
 from trundle.vehicle import container_truck_40ft, quarter_car
 
 CASE = "Always"
@@ -36,15 +49,25 @@ def way(vehicle):
     )  # fmt: skip
 
 
-def states_of_a_coupled_run(floor, crossing, method, duration):
-    """Step the production solver and keep every state, which it does not do by itself."""
+def laid_out(floor, crossing, method, duration):
+    """Lay out production's own pieces, whose histories production does not keep."""
     prepared = prepare(floor, method.integration, method.damping)
     timeline = lay_out((crossing,), method.integration.dt, duration)
     road = roads_under_wheels((crossing,), timeline, range(1), 0)
     rows = operator_rows(floor, (crossing,), timeline, method.contact)
-    law = _contact_law((crossing,), method.integration)
-    carrier = _contact_floor(
-        prepared, rows, timeline, _point_rows(floor, {"p": (3.0, 3.0)}), coupled=True
+    return prepared, timeline, road, rows
+
+
+def direct_states(floor, crossing, method, duration):
+    """Return floor and vehicle displacement and velocity, and forces, at every step."""
+    prepared, timeline, road, rows = laid_out(floor, crossing, method, duration)
+    carrier = FullFloor(
+        prepared.propagator, rows, timeline.speed[timeline.n_run_in :],
+        sparse.csr_array(np.eye(1, floor.n_dofs)), flexibility=prepared.flexibility, coupled=True,
+    )  # fmt: skip
+    law = march.ContactLaw(
+        springs=_springs((crossing,)),
+        vehicle=NewmarkPropagator(crossing.vehicle.free_system, method.integration),
     )
     vehicle, forces = march.run_in(law, timeline, road)
     state = (vehicle, carrier.start(1, None), forces)
@@ -53,11 +76,46 @@ def states_of_a_coupled_run(floor, crossing, method, duration):
         at = timeline.n_run_in + step
         state = march._step(law, carrier, state, at, road, step=step)
         kept.append(state)
-    return prepared, timeline, road, rows, kept
+    motions = [
+        np.array([getattr(s[which], name)[:, 0] for s in kept])
+        for which in (0, 1)
+        for name in ("displacement", "velocity")
+    ]
+    shapes = np.eye(floor.n_dofs)
+    heat = method.damping.matrix(floor.mass, floor.stiffness)
+    forces = np.array([s[2][:, 0] for s in kept])
+    return (timeline, road, rows), motions, forces, (floor.mass, floor.stiffness, heat, shapes)
 
 
-def column(kept, which, name):
-    return np.array([getattr(state[which], name)[:, 0] for state in kept])
+def modal_states(floor, crossing, method, duration):
+    """The same in modes: points that read ``Phi^T M u`` are the modes' own coordinates."""
+    prepared, timeline, road, rows = laid_out(floor, crossing, method, duration)
+    modes = prepared.modes
+    reader = sparse.csr_array(modes.shapes.T @ floor.mass)
+    carrier = ModalFloor(
+        modes, prepared.propagator, rows, timeline.speed[timeline.n_run_in :], reader,
+        flexibility=None,
+    )  # fmt: skip
+    vehicle = ExactRecursion(crossing.vehicle.free_system, method.integration.dt)
+    springs = _springs((crossing,))
+    record = drive_in_blocks(
+        Steps(springs=springs, vehicle=vehicle, timeline=timeline), carrier, road,
+        weight=np.ones(1), coupled=True, static=False,
+    )  # fmt: skip
+    forces = record.forces[:, :, 0]
+    push = (forces - crossing.vehicle.static_forces) @ crossing.vehicle.contact_map
+    e, k = springs.contact_map, springs.stiffness
+    still = np.linalg.solve(springs.standing_stiffness, e.T @ (k * road.elevation[0]))[:, 0]
+    states = [np.concatenate([still, 0 * still])]
+    for before, after in itertools.pairwise(push):
+        states.append(
+            vehicle.phi @ states[-1] + vehicle.from_start @ before + vehicle.from_end @ after
+        )
+    z, zd = np.split(np.array(states), 2, axis=1)
+    motions = [z, zd, record.displacement[:, :, 0], record.velocity[:, :, 0]]
+    heat = np.diag(2 * method.damping.ratios(modes.omega) * modes.omega)
+    parts = (np.eye(modes.n_modes), np.diag(modes.omega**2), heat, modes.shapes)
+    return (timeline, road, rows), motions, forces, parts
 
 
 def cumulative(power, dt):
@@ -77,26 +135,16 @@ def balance(vehicle, integration, damping, duration=2.4):
     floor = small_floor(mesh_size=2.0)
     crossing = way(vehicle)
     method = Coupled(integration=integration, damping=damping, contact=Hermite())
-    prepared, timeline, road, rows, kept = states_of_a_coupled_run(
+    states = direct_states if isinstance(integration, Newmark) else modal_states
+    (timeline, road, rows), (z, zd, q, qd), forces, parts = states(
         floor, crossing, method, duration
     )
+    mass, strain, heat, shapes = parts
     dt, first = integration.dt, timeline.n_run_in
     n_c = vehicle.n_contacts
-    z, zd = column(kept, 0, "displacement"), column(kept, 0, "velocity")
-    q, qd = column(kept, 1, "displacement"), column(kept, 1, "velocity")
-    forces = np.array([state[2][:, 0] for state in kept])
     free = vehicle.free_system
-    if prepared.modes is None:
-        mass, strain = floor.mass, floor.stiffness
-        heat = damping.matrix(floor.mass, floor.stiffness)
-        shapes = np.eye(floor.n_dofs)
-    else:
-        modes = prepared.modes
-        mass, strain = np.eye(modes.n_modes), np.diag(modes.omega**2)
-        heat = np.diag(2 * damping.ratios(modes.omega) * modes.omega)
-        shapes = modes.shapes
     value, slope = (rows.matrix(w) @ shapes for w in (rows.value, rows.slope))
-    value, slope = (a.reshape(len(kept), n_c, -1) for a in (value, slope))
+    value, slope = (a.reshape(len(q), n_c, -1) for a in (value, slope))
     speed = timeline.speed[first:][:, :, None]
     under = np.einsum("tcm,tm->tc", value, q)
     drift = np.einsum("tcm,tm->tc", speed * slope, q)

@@ -106,7 +106,7 @@ def test_period_of_average_acceleration(record, f, longer):
     )
     propagator = NewmarkPropagator(system, Newmark(dt=dt))
     one = np.ones((1, 1))
-    state = State(displacement=one, velocity=0 * one, acceleration=-(omega**2) * one, force=one[:0])
+    state = State(displacement=one, velocity=0 * one, acceleration=-(omega**2) * one)
     u = [1.0]
     for _ in range(4000):
         state = propagator.finish(state, propagator.predict(state))

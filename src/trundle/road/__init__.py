@@ -9,9 +9,9 @@ from trundle.road.iso8608 import (
     RoughnessLevel,
     class_limits,
 )
-from trundle.road.profile import Profile
+from trundle.road.profile import Profile, ProfileReader
 from trundle.road.survey import RoughnessFit, classify, fit_roughness, roughness_index
-from trundle.road.synthesis import RoughnessBand, synthesise
+from trundle.road.synthesis import RoughnessBand, synthesise, wave_power
 from trundle.road.temporal import temporal_psd, temporal_psd_two_sided
 from trundle.road.tracks import synthesise_tracks, track_coherence
 
@@ -21,6 +21,7 @@ __all__ = [
     "REFERENCE_ANGULAR_FREQUENCY",
     "REFERENCE_FREQUENCY",
     "Profile",
+    "ProfileReader",
     "RoadClass",
     "RoughnessBand",
     "RoughnessFit",
@@ -34,4 +35,5 @@ __all__ = [
     "temporal_psd",
     "temporal_psd_two_sided",
     "track_coherence",
+    "wave_power",
 ]

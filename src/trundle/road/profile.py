@@ -12,7 +12,7 @@ from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array, ArrayLike
 from trundle.errors import InputError
 
-__all__ = ["Profile"]
+__all__ = ["Profile", "ProfileReader"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,18 +99,41 @@ class Profile:
 
     def at(self, station: ArrayLike) -> tuple[Float[Array, ...], Float[Array, ...]]:
         """Return elevation [m] and slope [m/m] at any stations [m]."""
+        return ProfileReader(self.station, station).read(self.elevation, self.slope)
+
+
+class ProfileReader:
+    """Find once where stations lie between samples, and read many profiles there.
+
+    Parameters
+    ----------
+    samples : ndarray of float, shape (n_points,)
+        Stations of the profiles' samples [m].
+    station : array_like of float
+        Where they are to be read [m].
+    """
+
+    def __init__(self, samples: Float[Array, " points"], station: ArrayLike) -> None:
         s = np.asarray(station, float)
-        inside = np.clip(s, self.station[0], self.station[-1])
-        right = np.clip(np.searchsorted(self.station, inside, "right"), 1, len(self.station) - 1)
+        inside = np.clip(s, samples[0], samples[-1])
+        right = np.clip(np.searchsorted(samples, inside, "right"), 1, len(samples) - 1)
         # At the far end of a kinked profile the last interval may have no length.
-        while np.any(flat := self.station[right] == self.station[right - 1]):
+        while np.any(flat := samples[right] == samples[right - 1]):
             right = right - flat
-        left = right - 1
-        width = self.station[right] - self.station[left]
-        x = (inside - self.station[left]) / width
-        z0, z1 = self.elevation[left], self.elevation[right]
-        g0, g1 = self.slope[left] * width, self.slope[right] * width
-        rise = z1 - z0
-        elevation = z0 + x * (g0 + x * (3 * rise - 2 * g0 - g1 + x * (g0 + g1 - 2 * rise)))
-        slope = (g0 + x * (6 * rise - 4 * g0 - 2 * g1 + 3 * x * (g0 + g1 - 2 * rise))) / width
-        return elevation, np.where(s == inside, slope, 0.0)
+        self._right, self._left = right, right - 1
+        self._width = samples[right] - samples[self._left]
+        self._x = (inside - samples[self._left]) / self._width
+        self._level = s != inside
+
+    def read(
+        self, elevation: Float[Array, " points"], slope: Float[Array, " points"]
+    ) -> tuple[Float[Array, ...], Float[Array, ...]]:
+        """Return elevation [m] and slope [m/m] of one profile at the stations."""
+        x, width = self._x, self._width
+        z0 = elevation[self._left]
+        g0, g1 = slope[self._left] * width, slope[self._right] * width
+        rise = elevation[self._right] - z0
+        second, third = 3 * rise - 2 * g0 - g1, g0 + g1 - 2 * rise
+        height = z0 + x * (g0 + x * (second + x * third))
+        steepness = (g0 + x * (2 * second + 3 * x * third)) / width
+        return height, np.where(self._level, 0.0, steepness)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 from scipy import fft
 
 from trundle._checks import non_negative, positive, set_frozen
@@ -13,7 +14,7 @@ from trundle.errors import InputError
 from trundle.road.iso8608 import FITTED_RANGE, RoadClass, band_power
 from trundle.road.profile import Profile
 
-__all__ = ["RoughnessBand", "synthesise"]
+__all__ = ["RoughnessBand", "synthesise", "wave_power"]
 
 _SAMPLES_PER_WAVE = 20  # cubic interpolation is then within 3e-5 of the shortest wave
 
@@ -150,3 +151,26 @@ def draw_spectrum(
     if n_samples % 2 == 0:
         coefficient[-1] = 0.0  # a wave at the sampling limit has no defined phase
     return 0.5 * n_samples * coefficient, waves
+
+
+def wave_power(
+    road: RoadClass, band: RoughnessBand, n: Float[Array, " waves"]
+) -> Float[Array, " waves"]:
+    """Share out the power of a band among waves, each to the middles of its neighbours.
+
+    Parameters
+    ----------
+    road : RoadClass
+        Spectrum.
+    band : RoughnessBand
+        Band and tyre averaging.
+    n : ndarray of float, shape (n_waves,)
+        Spatial frequencies inside the band, rising [cycle/m].
+
+    Returns
+    -------
+    ndarray of float, shape (n_waves,)
+        Variances; without tyre averaging their sum is the band's [m2].
+    """
+    edges = np.concatenate([[band.n_min], 0.5 * (n[1:] + n[:-1]), [band.n_max]])
+    return band_power(road, edges[:-1], edges[1:]) * np.sinc(n * band.contact_patch) ** 2

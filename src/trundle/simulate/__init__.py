@@ -4,6 +4,14 @@ from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
 from trundle.simulate._residual import StaticFlexibility
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.ensemble import batches, contact_forces, ensemble
+from trundle.simulate.harmonics import (
+    Harmonics,
+    MeanResponse,
+    Waves,
+    harmonics,
+    mean_response,
+    place_waves,
+)
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import Runs
 
@@ -11,8 +19,10 @@ __all__ = [
     "Coupled",
     "Crossing",
     "Decoupled",
+    "Harmonics",
     "Integration",
     "Interaction",
+    "MeanResponse",
     "Modal",
     "ModalRatio",
     "Newmark",
@@ -20,8 +30,12 @@ __all__ = [
     "Rayleigh",
     "Runs",
     "StaticFlexibility",
+    "Waves",
     "batches",
     "contact_forces",
     "ensemble",
+    "harmonics",
+    "mean_response",
+    "place_waves",
     "prepare",
 ]

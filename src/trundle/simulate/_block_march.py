@@ -16,6 +16,7 @@ from trundle.dynamics import ExactRecursion
 from trundle.errors import UnstableStepError
 from trundle.simulate._blocks import (
     Block,
+    ContactMaps,
     FloorPowers,
     VehiclePowers,
     contact_block,
@@ -28,7 +29,7 @@ from trundle.simulate._schedule import RoadUnderWheels, Timeline
 __all__ = ["Steps", "drive_in_blocks"]
 
 _BLOCK = 16  # steps; more would spend more on forming maps, fewer on applying them
-_COLUMNS = 128  # runs in one product; the same whatever the machine, so that bits are too
+_COLUMNS = 64  # runs in one product; the same whatever the machine, so that bits are too
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -113,7 +114,7 @@ class _March:
         )
         self._z = np.vstack([still, np.zeros_like(still)])
         self._dynamic = -springs.stiffness * (springs.contact_map @ still - road.elevation[0])
-        self._x = np.zeros((0, n_runs))
+        self._x: list[Array] = []
 
     def stand(self, floor: ModalFloor | None) -> None:
         """Put vehicle and floor in static equilibrium at time 0.
@@ -137,9 +138,11 @@ class _March:
         """Put the floor at rest, deflected by static forces if given."""
         if floor is None:
             return
-        n_runs = len(self._weight)
-        still = np.zeros((2 * floor.n_modes, n_runs))
-        self._x = still if forces is None else floor.static_state(forces)
+        # Each slice has an array of its own, so that it lies together in cache.
+        for part in self._slices:
+            n_runs = len(self._weight[part])
+            still = np.zeros((2 * floor.n_modes, n_runs))
+            self._x.append(still if forces is None else floor.static_state(forces[:, part]))
 
     def run_in(self) -> None:
         """Drive on rigid ground up to time 0."""
@@ -155,10 +158,13 @@ class _March:
         """Carry on over the record; with `forces` given they load the floor as they are."""
         timeline = self._steps.timeline
         n_steps = len(timeline.time) - timeline.n_run_in
-        if floor is not None and not len(self._x):
+        if floor is not None and not self._x:
             self.rest(floor, None)
         out = _Histories(floor, n_steps, self._n, len(self._weight))
-        out.begin(self._x, self._total(self._dynamic) if forces is None else forces[0])
+        out.begin(
+            np.hstack(self._x) if self._x else np.zeros((0, 0)),
+            self._total(self._dynamic) if forces is None else forces[0],
+        )
         forming = self._form(floor, forces is None)
         parts = list(_parts(n_steps - 1))
         later = self._pool.submit(forming, *parts[0])
@@ -202,47 +208,48 @@ class _March:
         """
         n_runs, rows = len(self._weight), block.n_steps * self._n
         total = np.empty((rows, n_runs))
-        n_outputs = 0 if block.points_X is None else len(block.points_X)
-        outputs = np.empty((n_outputs, n_runs))
+        maps = block.floor
+        outputs = np.empty((0 if maps is None else len(maps.points_by_state), n_runs))
 
-        def carry(part: slice) -> None:
-            if forces is None:
-                every = self._solve(block, at, part, total)
-            else:
-                every = forces[:, :, part].reshape(-1, total[:, part].shape[1])
+        def carry(number: int) -> None:
+            part = self._slices[number]
+            if block.contact is not None:
+                every = self._solve(block.contact, at, number)
                 total[:, part] = every[self._n :]
-            if block.points_X is not None and block.points_F is not None:
-                outputs[:, part] = block.points_X @ self._x[:, part] + block.points_F @ every
-            if block.state_F is not None and block.state_X is not None:
-                self._x[:, part] = _advance(block.state_X, block.state_F @ every, self._x[:, part])
+            else:
+                assert forces is not None  # contacts are solved, or their forces are known
+                every = forces[:, :, part].reshape(-1, len(self._weight[part]))
+            if maps is not None:
+                x = self._x[number]
+                outputs[:, part] = maps.points_by_state @ x + maps.points_by_forces @ every
+                gained = maps.state_by_forces @ every
+                self._x[number] = _advance(maps.state_by_state, gained, x)
 
-        for _ in self._pool.map(carry, self._slices):
+        for _ in self._pool.map(carry, range(len(self._slices))):
             pass
+        if block.contact is None and forces is not None:
+            return forces[1:], outputs
         return total.reshape(block.n_steps, self._n, n_runs), outputs
 
-    def _solve(self, block: Block, at: int, part: slice, total: Array) -> Array:
+    def _solve(self, maps: ContactMaps, at: int, number: int) -> Array:
         """Solve the contact forces of a block; return those before it and in it."""
+        part = self._slices[number]
         springs, weight = self._steps.springs, self._weight[part]
-        rows = slice(at + 1, at + 1 + block.n_steps)
+        n_steps = len(maps.by_weight) // self._n
+        rows = slice(at + 1, at + 1 + n_steps)
         push = springs.stiffness * self._road.elevation[rows, :, part]
         push += springs.damping * self._road.rate[rows, :, part]
         before, z = self._dynamic[:, part], self._z[:, part]
-        assert block.forces_R is not None  # a block to be solved has all its maps
-        assert block.forces_Z is not None
-        assert block.forces_B is not None
-        assert block.forces_W is not None
-        dynamic = block.forces_R @ push.reshape(-1, len(weight))
-        dynamic += block.forces_Z @ z
-        dynamic += block.forces_B @ before
-        dynamic += np.outer(block.forces_W, weight)
-        if block.forces_X is not None:
-            dynamic += block.forces_X @ self._x[:, part]
+        dynamic = maps.by_road @ push.reshape(-1, len(weight))
+        dynamic += maps.by_vehicle @ z
+        dynamic += maps.by_before @ before
+        dynamic += np.outer(maps.by_weight, weight)
+        if maps.by_floor is not None:
+            dynamic += maps.by_floor @ self._x[number]
         every = np.vstack([before, dynamic])
-        assert block.vehicle_Z is not None
-        self._z[:, part] = block.vehicle_Z @ z + block.vehicle_F @ every
+        self._z[:, part] = maps.vehicle_by_vehicle @ z + maps.vehicle_by_forces @ every
         self._dynamic[:, part] = dynamic[-self._n :]
-        every += np.outer(np.tile(springs.static[:, 0], block.n_steps + 1), weight)
-        total[:, part] = every[self._n :]
+        every += np.outer(np.tile(springs.static[:, 0], n_steps + 1), weight)
         return every
 
 

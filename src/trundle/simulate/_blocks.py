@@ -27,27 +27,62 @@ __all__ = ["Block", "FloorPowers", "VehiclePowers", "contact_block", "load_block
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Block:
-    """Hold the maps of one block; rows of forces run over steps, then contacts.
+class ContactMaps:
+    """Hold how a block's contact forces and its last vehicle state follow from what is known.
 
-    A capital letter names what a map acts on: X the floor's state before the block, Z the
-    vehicle's, B the dynamic forces before it, W the weight of the static forces in each run,
-    R the push of the road ``k r + c r'``, F all forces from the step before the block on. None
-    stands where there is no floor or no contact to solve.
+    Rows of forces run over steps, then contacts. Maps are named by what they act on.
+
+    Attributes
+    ----------
+    by_floor : ndarray or None
+        The floor's state before the block; None on rigid ground.
+    by_vehicle, by_before : ndarray of float
+        The vehicle's state and the dynamic forces before the block.
+    by_weight : ndarray of float, shape (n_forces,)
+        The share of its static forces that a run feels.
+    by_road : ndarray of float, shape (n_forces, n_forces)
+        The push of the road ``k r + c r'``.
+    vehicle_by_vehicle, vehicle_by_forces : ndarray of float
+        The vehicle's last state: its state before, and all dynamic forces from the step before
+        the block on.
     """
 
+    by_floor: Float[Array, "forces state"] | None
+    by_vehicle: Float[Array, "forces vehicle"]
+    by_before: Float[Array, "forces contacts"]
+    by_weight: Float[Array, " forces"]
+    by_road: Float[Array, "forces forces"]
+    vehicle_by_vehicle: Float[Array, "vehicle vehicle"]
+    vehicle_by_forces: Float[Array, "vehicle all_forces"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FloorMaps:
+    """Hold how the response at the points and the floor's last state follow.
+
+    Attributes
+    ----------
+    points_by_state, points_by_forces : ndarray of float
+        Displacement, velocity and acceleration of all points, step by step.
+    state_by_state : tuple of ndarray, shapes (n_modes, 1)
+        Displacement by displacement and by velocity, then velocity by both.
+    state_by_forces : ndarray of float
+        What all forces from the step before the block on add to the state.
+    """
+
+    points_by_state: Float[Array, "outputs state"]
+    points_by_forces: Float[Array, "outputs all_forces"]
+    state_by_state: tuple[Array, ...]
+    state_by_forces: Float[Array, "state all_forces"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Block:
+    """Hold the maps of one block: of its contacts where they are solved, of the floor if any."""
+
     n_steps: int
-    forces_X: Float[Array, "forces state"] | None = None
-    forces_Z: Float[Array, "forces vehicle"] | None = None
-    forces_B: Float[Array, "forces contacts"] | None = None
-    forces_W: Float[Array, " forces"] | None = None
-    forces_R: Float[Array, "forces forces"] | None = None
-    vehicle_Z: Float[Array, "vehicle vehicle"] | None = None
-    vehicle_F: Float[Array, "vehicle all_forces"] | None = None
-    points_X: Float[Array, "outputs state"] | None = None
-    points_F: Float[Array, "outputs all_forces"] | None = None
-    state_X: tuple[Array, ...] | None = None
-    state_F: Float[Array, "state all_forces"] | None = None
+    contact: ContactMaps | None
+    floor: FloorMaps | None
 
 
 class FloorPowers:
@@ -66,7 +101,7 @@ class FloorPowers:
         self.lag = np.array([end, *(_apply(power, gamma) for power in powers[: n_steps - 1])])
         self.n_points, self.points = len(points), points
         rows = _point_rows(propagator, points)  # (2, 3 points, modes)
-        self.points_X = np.concatenate(
+        self.points_by_state = np.concatenate(
             [_on_state(rows, power).reshape(-1, 2 * phi.shape[2]) for power in self.phi]
         )
         self.points_lag = np.concatenate([np.einsum("apm,am->pm", rows, g) for g in self.lag])
@@ -88,7 +123,7 @@ class VehiclePowers:
         self.phi = np.array(powers[1:])
         self.start = np.array([power @ start for power in powers[:-1]])
         self.lag = np.array([end, *(power @ gamma for power in powers[: n_steps - 1])])
-        self.push_Z = np.concatenate([push @ power for power in self.phi])
+        self.push_by_state = np.concatenate([push @ power for power in self.phi])
         self.push_start, self.push_lag = push @ self.start, push @ self.lag
 
 
@@ -122,59 +157,60 @@ def contact_block(
     n = len(static)
     on_dynamic = _toeplitz(-vehicle.push_lag, -vehicle.push_start, n_steps)
     on_total = np.zeros_like(on_dynamic)
+    on_state, floor_maps = None, None
     if floor is not None and powers is not None:
         rows = _contact_rows(floor, first, n_steps, stiffness, damping)
         on_total = _floor_influence(floor, powers, rows, first, n_steps)
-        _add_residual(on_total, floor, first, n_steps, stiffness, damping)
+        _add_residual(on_total, floor, first, stiffness, damping)
+        on_state = _on_state(rows, powers.phi[:n_steps]).reshape(n_steps * n, -1)
+        floor_maps = _floor_maps(floor, powers, first, n_steps)
     both = (on_dynamic + on_total).reshape(n_steps * n, (n_steps + 1) * n)
     solve = np.linalg.inv(np.eye(n_steps * n) - both[:, n:])
     weight = on_total.reshape(n_steps * n, -1) @ np.tile(static, n_steps + 1)
-    block = {
-        "n_steps": n_steps,
-        "forces_Z": -solve @ vehicle.push_Z[: n_steps * n],
-        "forces_B": solve @ both[:, :n],
-        "forces_W": solve @ weight,
-        "forces_R": solve,
-        "vehicle_Z": vehicle.phi[n_steps - 1],
-        "vehicle_F": np.hstack([vehicle.start[n_steps - 1], *vehicle.lag[:n_steps][::-1]]),
-    }
-    if floor is None or powers is None:
-        return Block(**block)
-    on_state = _on_state(rows, powers.phi[:n_steps]).reshape(n_steps * n, -1)
-    return Block(**block, forces_X=solve @ on_state, **_floor_maps(floor, powers, first, n_steps))
+    contact = ContactMaps(
+        by_floor=None if on_state is None else solve @ on_state,
+        by_vehicle=-solve @ vehicle.push_by_state[: n_steps * n],
+        by_before=solve @ both[:, :n],
+        by_weight=solve @ weight,
+        by_road=solve,
+        vehicle_by_vehicle=vehicle.phi[n_steps - 1],
+        vehicle_by_forces=np.hstack([vehicle.start[n_steps - 1], *vehicle.lag[:n_steps][::-1]]),
+    )
+    return Block(n_steps=n_steps, contact=contact, floor=floor_maps)
 
 
 def load_block(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int) -> Block:
     """Form the maps of a floor under known contact forces."""
-    return Block(n_steps=n_steps, **_floor_maps(floor, powers, first, n_steps))
+    maps = _floor_maps(floor, powers, first, n_steps)
+    return Block(n_steps=n_steps, contact=None, floor=maps)
 
 
-def _floor_maps(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int) -> dict:
+def _floor_maps(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int) -> FloorMaps:
     """Return how points and state follow from the state before and all forces."""
     load = floor.loads(first, first + n_steps + 1)  # (steps + 1, contacts, modes)
     n, n_modes = load.shape[1:]
     outputs = 3 * powers.n_points
     flat = load[1:].reshape(n_steps * n, n_modes)
     lagged = (powers.points_lag[: n_steps * outputs] @ flat.T).reshape(n_steps, outputs, n_steps, n)
-    points_F = np.zeros((n_steps, outputs, n_steps + 1, n))
-    points_F[:, :, 0] = -(powers.points_start[: n_steps * outputs] @ load[0].T).reshape(
+    points_by_forces = np.zeros((n_steps, outputs, n_steps + 1, n))
+    points_by_forces[:, :, 0] = -(powers.points_start[: n_steps * outputs] @ load[0].T).reshape(
         n_steps, outputs, n
     )
     for lag in range(n_steps):
         at = np.arange(n_steps - lag)
-        points_F[at + lag, :, at + 1] = -lagged[lag][:, at].transpose(1, 0, 2)
+        points_by_forces[at + lag, :, at + 1] = -lagged[lag][:, at].transpose(1, 0, 2)
     # the acceleration feels the force of its own step at once
     own = -(powers.points @ flat.T).reshape(powers.n_points, n_steps, n).transpose(1, 0, 2)
     at = np.arange(n_steps)
-    points_F[at, 2 * powers.n_points :, at + 1] += own
+    points_by_forces[at, 2 * powers.n_points :, at + 1] += own
     gains = np.concatenate([powers.start[n_steps - 1][None], powers.lag[:n_steps][::-1]])
-    state_F = -np.einsum("jam,jcm->amjc", gains, load).reshape(2 * n_modes, -1)
-    return {
-        "points_X": powers.points_X[: n_steps * outputs],
-        "points_F": points_F.reshape(n_steps * outputs, -1),
-        "state_X": tuple(powers.phi[n_steps - 1].reshape(4, -1)[:, :, None]),
-        "state_F": state_F,
-    }
+    state_by_forces = -np.einsum("jam,jcm->amjc", gains, load).reshape(2 * n_modes, -1)
+    return FloorMaps(
+        points_by_state=powers.points_by_state[: n_steps * outputs],
+        points_by_forces=points_by_forces.reshape(n_steps * outputs, -1),
+        state_by_state=tuple(powers.phi[n_steps - 1].reshape(4, -1)[:, :, None]),
+        state_by_forces=state_by_forces,
+    )
 
 
 def _contact_rows(
@@ -205,9 +241,10 @@ def _floor_influence(
 
 
 def _add_residual(
-    out: Array, floor: ModalFloor, first: int, n_steps: int, stiffness: Array, damping: Array
+    out: Array, floor: ModalFloor, first: int, stiffness: Array, damping: Array
 ) -> None:
     """Add the modes left out: they sink at once, at a rate since the step before."""
+    n_steps = len(out)
     sinking = floor.residual_sinking(first, first + n_steps + 1)
     if sinking is None:
         return

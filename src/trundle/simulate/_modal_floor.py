@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from jaxtyping import Float
+from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import ModalRecursion, Modes
@@ -37,6 +38,10 @@ class ModalFloor:
         self.speed = speed
         self.points = np.ascontiguousarray(points @ modes.shapes)
         self._modes, self._rows, self._n = modes, rows, speed.shape[1]
+        # Only the route's dofs are read; together they stay in cache.
+        used = rows.used_dofs()
+        self._route_shapes = np.ascontiguousarray(modes.shapes[used])
+        self._at = np.minimum(np.searchsorted(used, rows.dofs), max(0, len(used) - 1))
         self._load_share = rows.load_share.reshape(-1, self._n)
         self._chunks: dict[int, tuple[Array, Array]] = {}
         self._residual = (
@@ -81,10 +86,14 @@ class ModalFloor:
         return np.vstack([q, np.zeros_like(q)])
 
     def _chunk(self, start: int) -> tuple[Array, Array]:
-        part = self._rows.part(slice(start * self._n, (start + _CHUNK) * self._n))
-        shape = (-1, self._n, self.n_modes)
-        value = (part.matrix(part.value) @ self._modes.shapes).reshape(shape)
-        return value, (part.matrix(part.slope) @ self._modes.shapes).reshape(shape)
+        part = slice(start * self._n, (start + _CHUNK) * self._n)
+        weights = np.concatenate([self._rows.value[part], self._rows.slope[part]])
+        at = np.concatenate([self._at[part]] * 2)
+        starts = np.arange(0, at.size + 1, at.shape[1])
+        shape = (len(at), len(self._route_shapes))
+        matrix = sparse.csr_array((weights.ravel(), at.ravel(), starts), shape=shape)
+        both = (matrix @ self._route_shapes).reshape(2, -1, self._n, self.n_modes)
+        return both[0], both[1]
 
 
 class _Residual:

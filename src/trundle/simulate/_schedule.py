@@ -10,13 +10,14 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.road import Profile, synthesise_tracks
+from trundle.road import Profile, ProfileReader, synthesise_tracks
 from trundle.route import ContactRows, ContactShape, StaticStart, contact_rows, deck_of
 from trundle.simulate.crossing import Crossing
 from trundle.structure import Floor
 
 __all__ = ["RoadUnderWheels", "Timeline", "lay_out", "operator_rows", "roads_under_wheels"]
 
+_TOGETHER = 64  # roads laid beside each other at once, for the runs are the last axis
 _MARGIN = 10.0  # m of road beyond the wheels, so that none runs off its profile
 
 
@@ -107,15 +108,33 @@ def roads_under_wheels(
         at = columns.stop
         station, speed = timeline.station[:, columns], timeline.speed[:, columns]
         tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
-        for place, run in enumerate(runs):
-            rng = run_generator(seed, crossing.route.name, run)
-            profiles = _profiles_of(crossing, tracks, float(speed.max()), timeline, rng)
-            for i, profile in enumerate(profiles):
-                under = np.flatnonzero(which == i)
-                z, slope = profile.at(station[:, under])
-                elevation[:, columns.start + under, place] = z
-                rate[:, columns.start + under, place] = speed[:, under] * slope
+        readers: list[ProfileReader] = []
+        under = [np.flatnonzero(which == i) for i in range(len(tracks))]
+        for start in range(0, len(runs), _TOGETHER):
+            some = runs[start : start + _TOGETHER]
+            drawn = np.empty((2, len(some), *station.shape))
+            for place, run in enumerate(some):
+                rng = run_generator(seed, crossing.route.name, run)
+                profiles = _profiles_of(crossing, tracks, float(speed.max()), timeline, rng)
+                # every run's profile has the same stations
+                readers = readers or _readers(profiles, station, under)
+                for profile, reader, wheels in zip(profiles, readers, under, strict=True):
+                    z, slope = reader.read(profile.elevation, profile.slope)
+                    drawn[0, place][:, wheels] = z
+                    drawn[1, place][:, wheels] = slope
+            here = slice(start, start + len(some))
+            elevation[:, columns, here] = np.moveaxis(drawn[0], 0, -1)
+            rate[:, columns, here] = speed[:, :, None] * np.moveaxis(drawn[1], 0, -1)
     return RoadUnderWheels(elevation=elevation, rate=rate)
+
+
+def _readers(
+    profiles: tuple[Profile, ...], station: Array, under: list[Array]
+) -> list[ProfileReader]:
+    return [
+        ProfileReader(profile.station, station[:, wheels])
+        for profile, wheels in zip(profiles, under, strict=True)
+    ]
 
 
 def _profiles_of(

@@ -93,19 +93,31 @@ def batches(
 
     Parameters
     ----------
-    floor, crossings, method, points, seed, duration, progress
-        As in `ensemble`.
+    floor : Floor or PreparedFloor
+        The floor.
+    crossings : Crossing or sequence of Crossing
+        One vehicle, or several at once.
+    method : Decoupled or Coupled
+        Interaction, integration, damping and contact.
+    points : mapping of str to (x, y)
+        Where the response is read [m].
     runs : range
         Numbers of the runs; a run's road depends on the seed and its number alone.
+    seed : int
+        Seed of all roads.
+    duration : float, optional
+        Length of the record [s], as in `ensemble`.
     batch : int, optional
         Runs in a batch; as many as 256 MB of histories hold unless given.
+    progress : callable, optional
+        Told the share of all runs' steps done.
 
     Yields
     ------
     Runs
         The next runs, with their histories.
     """
-    many = _as_tuple(crossings)
+    many = as_tuple(crossings)
     if not points:
         raise InputError("name at least one point where the response is to be read")
     if isinstance(floor, Floor):
@@ -181,7 +193,8 @@ def _part_of(progress: Progress | None, start: float, length: float) -> Progress
     return lambda share: progress(start + length * share)
 
 
-def _as_tuple(crossings: Crossing | Sequence[Crossing]) -> tuple[Crossing, ...]:
+def as_tuple(crossings: Crossing | Sequence[Crossing]) -> tuple[Crossing, ...]:
+    """Return crossings as a tuple, at least one."""
     many = (crossings,) if isinstance(crossings, Crossing) else tuple(crossings)
     if not many:
         raise InputError("an ensemble needs at least one crossing")

@@ -136,13 +136,17 @@ class Vehicle:
 
     def decay_rates(self) -> Float[Array, " modes"]:
         """Return the decay rates of the free motions on rigid ground [1/s], rising."""
+        return np.sort(-np.real(self.poles()))
+
+    def poles(self) -> Complex[Array, " modes"]:
+        """Return the eigenvalues of the free motions on rigid ground [1/s], in any order."""
         s = self.system
         inverse = np.linalg.inv(np.asarray(s.mass))
         n = s.n_dofs
         state = np.block(
             [[np.zeros((n, n)), np.eye(n)], [-inverse @ s.stiffness, -inverse @ s.damping]]
         )
-        return np.sort(-np.linalg.eigvals(state).real)
+        return np.linalg.eigvals(state)
 
     def contact_force_transfer(
         self, f: Float[Array, " lines"], *, speed: float

@@ -18,7 +18,8 @@ from test_bad_input import GOOD
 
 from trundle.report import bound_rows, comparison_rows, write_report
 from trundle.study import load_study
-from trundle.study.run import CellKey, run_study
+from trundle.study.cells import CellKey
+from trundle.study.run import run_study
 from trundle.study.store import check_target, new_results_folder, uninterrupted, write_results
 
 EXTRA = """

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from trundle.cli.screen import print_table
-from trundle.report import bound_rows, comparison_rows, summary_rows, verdict_matrix
+from trundle.report import (
+    bound_rows,
+    comparison_rows,
+    exact_rows,
+    summary_rows,
+    verdict_matrix,
+)
 from trundle.study.run import StudyResult
 
 __all__ = ["print_result"]
@@ -38,7 +44,38 @@ def print_result(result: StudyResult) -> None:
             ),
             text_columns=4,
         )
+    _print_exact(result)
     _print_verdicts(result)
+
+
+def _print_exact(result: StudyResult) -> None:
+    rows = exact_rows(result)
+    assessed = result.study.assessment
+    if assessed is not None:
+        rows = [row for row in rows if row.method == assessed.method]
+    if not rows:
+        return
+    headings = ("vehicle on", "class", "method", "point", "RMS v exact [um/s]", "runs")
+    print_table(
+        f"Exact statistics over all roads, beside {result.study.runs} runs",
+        (*headings, "a 50 % [gal]", "runs", "a 95 % [gal]", "runs (95 % interval)"),
+        (
+            (
+                row.case,
+                row.road,
+                row.method,
+                row.point,
+                f"{row.rms:.4g}",
+                f"{row.sampled_rms:.4g}",
+                f"{row.peak[0]:.3g}",
+                f"{row.sampled_peak[0]:.3g}",
+                f"{row.peak[1]:.3g}",
+                f"{row.sampled_peak[1]:.3g} ({row.interval[0]:.3g}-{row.interval[1]:.3g})",
+            )
+            for row in rows
+        ),
+        text_columns=4,
+    )
 
 
 def _print_comparison(result: StudyResult) -> None:

@@ -87,7 +87,7 @@ def assess(
         The curves.
     percentile : float
         Share of runs that the compared level must cover, 0 to 100.
-    averaging : {"max_1s", "slow", "event"}
+    averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of band levels.
 
     Returns

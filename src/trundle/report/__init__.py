@@ -1,6 +1,19 @@
 """Draw figures and write the report of a study."""
 
 from trundle.report.page import write_report
-from trundle.report.tables import bound_rows, comparison_rows, summary_rows, verdict_matrix
+from trundle.report.tables import (
+    bound_rows,
+    comparison_rows,
+    exact_rows,
+    summary_rows,
+    verdict_matrix,
+)
 
-__all__ = ["bound_rows", "comparison_rows", "summary_rows", "verdict_matrix", "write_report"]
+__all__ = [
+    "bound_rows",
+    "comparison_rows",
+    "exact_rows",
+    "summary_rows",
+    "verdict_matrix",
+    "write_report",
+]

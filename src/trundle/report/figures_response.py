@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from trundle.criteria import Criterion
 from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
 from trundle.report.tables import ComparisonRow
-from trundle.study.run import CellKey, StudyResult
+from trundle.study.cells import CellKey
+from trundle.study.run import StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = [
@@ -81,7 +82,12 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
 
 
 def _rule(result: StudyResult) -> str:
-    names = {"max_1s": "largest 1 s average", "slow": "slow", "event": "whole event"}
+    names = {
+        "max_1s": "largest 1 s average",
+        "slow": "slow",
+        "fast": "fast",
+        "event": "whole event",
+    }
     assessment = result.study.assessment
     return names[assessment.averaging if assessment else "max_1s"]
 

@@ -13,7 +13,13 @@ from matplotlib.figure import Figure
 
 from trundle.report import figures_floor, figures_response, figures_road, figures_vehicle
 from trundle.report.canvas import STYLE, Picture, save
-from trundle.report.tables import bound_rows, comparison_rows, summary_rows, verdict_matrix
+from trundle.report.tables import (
+    bound_rows,
+    comparison_rows,
+    exact_rows,
+    summary_rows,
+    verdict_matrix,
+)
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import self_weight_deflection
 from trundle.study.run import StudyResult
@@ -236,6 +242,7 @@ def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
         comparison=comparison_rows(result),
         bounds=bound_rows(result),
         summary=summary_rows(result),
+        exact=exact_rows(result),
         columns=columns,
         matrix=matrix,
         verdict=_headline(result),

@@ -7,17 +7,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from trundle.criteria import Verdict
-from trundle.response import percentile_rank, upper_bounds
+from trundle.response import percentile_interval, percentile_rank, upper_bounds
+from trundle.study.cells import CellKey
 from trundle.study.model import PrintedBound
-from trundle.study.run import CellKey, StudyResult
+from trundle.study.run import StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = [
     "BoundRow",
     "ComparisonRow",
+    "ExactRow",
     "SummaryRow",
     "bound_rows",
     "comparison_rows",
+    "exact_rows",
     "summary_rows",
     "verdict_matrix",
 ]
@@ -36,6 +39,36 @@ class SummaryRow:
     point: str
     peak: Range
     rms: Range
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExactRow:
+    """Hold exact statistics of one cell beside those of its runs.
+
+    Attributes
+    ----------
+    case, road, method, point : str
+        The cell.
+    rms, sampled_rms : float
+        Root of the mean square velocity over record and roads, exact and of the runs [um/s].
+    peak, sampled_peak : tuple of float
+        50 and 95 % of the peak acceleration, by the exact moments and of the runs [gal].
+    interval : tuple of float
+        Where the runs' 95 % peak lies with 95 % confidence [gal].
+    quadrature_error : float
+        Of the exact statistics.
+    """
+
+    case: str
+    road: str
+    method: str
+    point: str
+    rms: float
+    sampled_rms: float
+    peak: tuple[float, float]
+    sampled_peak: tuple[float, float]
+    interval: tuple[float, float]
+    quadrature_error: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +131,34 @@ def summary_rows(result: StudyResult) -> list[SummaryRow]:
         for key, cell in result.cells.items()
         for i, point in enumerate(result.study.points)
     ]
+
+
+def exact_rows(result: StudyResult) -> list[ExactRow]:
+    """Return exact statistics beside sampled ones, one row a cell and point that has them."""
+    rows = []
+    for key, cell in result.cells.items():
+        if cell.exact is None:
+            continue
+        exact, medians, highs = cell.exact, cell.exact.peak(50.0), cell.exact.peak(95.0)
+        for i, point in enumerate(result.study.points):
+            peaks = cell.peak_acceleration[:, i] / GAL
+            low, high = percentile_interval(peaks, 95.0)
+            rows.append(
+                ExactRow(
+                    case=key.case,
+                    road=key.road,
+                    method=key.method,
+                    point=point,
+                    rms=float(exact.rms()[i]) / MICROMETRE_PER_SECOND,
+                    sampled_rms=float(np.sqrt(np.mean(cell.rms_velocity[:, i] ** 2)))
+                    / MICROMETRE_PER_SECOND,
+                    peak=(float(medians[i]) / GAL, float(highs[i]) / GAL),
+                    sampled_peak=(float(np.median(peaks)), float(np.percentile(peaks, 95.0))),
+                    interval=(low, high),
+                    quadrature_error=exact.quadrature_error,
+                )
+            )
+    return rows
 
 
 def comparison_rows(result: StudyResult) -> list[ComparisonRow]:

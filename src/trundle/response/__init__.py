@@ -1,6 +1,23 @@
-"""Reduce histories to spectra, percentiles and bounds."""
+"""Reduce histories to spectra, percentiles, bounds and exact statistics."""
 
 from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
+from trundle.response.peaks import Process, peak_levels
+from trundle.response.reduction import Reduced, join, percentile_interval, reduce_runs
 from trundle.response.spectra import BandSpectra, velocity_spectra
+from trundle.response.statistics import ExactStatistics, exact_statistics
 
-__all__ = ["BandSpectra", "UpperBounds", "percentile_rank", "upper_bounds", "velocity_spectra"]
+__all__ = [
+    "BandSpectra",
+    "ExactStatistics",
+    "Process",
+    "Reduced",
+    "UpperBounds",
+    "exact_statistics",
+    "join",
+    "peak_levels",
+    "percentile_interval",
+    "percentile_rank",
+    "reduce_runs",
+    "upper_bounds",
+    "velocity_spectra",
+]

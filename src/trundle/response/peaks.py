@@ -38,6 +38,18 @@ class Process:
     covariance: Float[Array, "steps points"]
     turning: Float[Array, "steps points"]
 
+    def rougher(self, factor: float) -> Process:
+        """Return the process on a road whose elevation is so many times larger."""
+        square = factor**2
+        return Process(
+            time=self.time,
+            mean=self.mean,
+            variance=square * self.variance,
+            rate_variance=square * self.rate_variance,
+            covariance=square * self.covariance,
+            turning=square * self.turning,
+        )
+
     def at(self, point: int) -> Process:
         """Return the process at one point."""
         one = slice(point, point + 1)

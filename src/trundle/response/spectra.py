@@ -26,7 +26,7 @@ class BandSpectra:
         RMS velocity [m/s]; NaN in bands that the computation cannot show.
     resolved : ndarray of bool, shape (n_bands,)
         True where time step and modes reach over the whole band.
-    averaging : {"max_1s", "slow", "event"}
+    averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of every value.
     point_names : tuple of str
         Names of the points.
@@ -50,7 +50,7 @@ def velocity_spectra(runs: Runs, *, averaging: Averaging = "max_1s") -> BandSpec
     ----------
     runs : Runs
         The ensemble.
-    averaging : {"max_1s", "slow", "event"}
+    averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule.
 
     Returns

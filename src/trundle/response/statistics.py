@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -27,24 +29,19 @@ class ExactStatistics:
     ----------
     time : ndarray of float, shape (n_steps,)
         Time of the record [s].
-    mean : dict of str to ndarray, shape (n_steps, n_points)
+    mean : dict of str to ndarray
         Response to the static loads alone; keys ``displacement``, ``velocity``,
-        ``acceleration``.
-    std : dict of str to ndarray, shape (n_steps, n_points)
-        Standard deviation at each time; same keys.
-    contact_mean, contact_std : ndarray of float, shape (n_steps, n_contacts)
-        Contact forces [N].
+        ``acceleration`` (n_steps, n_points) and ``contact_forces`` (n_steps, n_contacts).
+    variance : dict of str to ndarray
+        Variance at each time; same keys and shapes.
+    processes : dict of str to Process
+        What decides the peaks of ``velocity`` and ``acceleration``.
     mid_band : ndarray of float, shape (n_bands,)
         Exact mid-band frequencies [Hz].
     resolved : ndarray of bool, shape (n_bands,)
         True where time step and modes reach over the whole band.
-    band_event : ndarray of float, shape (n_points, n_bands)
-        Root of the mean square velocity in each band, over record and roads [m/s].
-    band_running : ndarray of float, shape (n_points, n_bands)
-        Root of the largest mean square over 1 s, averaged over roads before the maximum is
-        taken [m/s]: below the median of each run's own maximum.
-    peaks : dict of str to Process
-        What decides the peaks of ``velocity`` and ``acceleration``.
+    band_mean, band_variance : ndarray of float, shape (n_resolved, n_points, n_steps)
+        Velocity in the resolved bands.
     quadrature_error : float
         Largest relative change of an RMS over the record if only every other wave stood for the
         road: above what more waves would change.
@@ -56,31 +53,63 @@ class ExactStatistics:
 
     time: Float[Array, " steps"]
     mean: dict[str, Array]
-    std: dict[str, Array]
-    contact_mean: Float[Array, "steps contacts"]
-    contact_std: Float[Array, "steps contacts"]
+    variance: dict[str, Array]
+    processes: dict[str, Process]
     mid_band: Float[Array, " bands"]
     resolved: Bool[Array, " bands"]
-    band_event: Float[Array, "points bands"]
-    band_running: Float[Array, "points bands"]
-    peaks: dict[str, Process]
+    band_mean: Float[Array, "resolved points steps"]
+    band_variance: Float[Array, "resolved points steps"]
     quadrature_error: float
     n_waves: int
     point_names: tuple[str, ...]
 
+    def std(self, quantity: str) -> Array:
+        """Return the standard deviation at each time."""
+        return np.sqrt(self.variance[quantity])
+
     def rms(self, quantity: str = "velocity") -> Float[Array, " points"]:
         """Return the root of the mean square over record and roads."""
-        return np.sqrt(np.mean(self.mean[quantity] ** 2 + self.std[quantity] ** 2, axis=0))
+        return np.sqrt(np.mean(self.mean[quantity] ** 2 + self.variance[quantity], axis=0))
+
+    def band_event(self) -> Float[Array, "points bands"]:
+        """Return the root of each band's mean square velocity over record and roads [m/s]."""
+        return self._in_bands(np.sqrt(np.mean(self.band_mean**2 + self.band_variance, axis=-1)))
+
+    def band_running(self) -> Float[Array, "points bands"]:
+        """Return the root of the largest mean square over 1 s in each band [m/s].
+
+        The mean square is averaged over roads before the maximum is taken; so it lies below the
+        median of each run's own maximum.
+        """
+        width = round(_WINDOW / float(self.time[1] - self.time[0]))
+        total = np.cumsum(self.band_mean**2 + self.band_variance, axis=-1)
+        total[..., width:] = total[..., width:] - total[..., :-width]
+        return self._in_bands(np.sqrt(np.maximum(total, 0.0).max(axis=-1, initial=0.0) / width))
 
     def peak(self, share: float, quantity: str = "acceleration") -> Float[Array, " points"]:
         """Return the largest absolute value that a share (0 to 100) of all roads stays below.
 
         An approximation, unlike the rest: see `peak_levels`.
         """
-        process = self.peaks[quantity]
+        process = self.processes[quantity]
         return np.array(
             [peak_levels(process.at(i), [share])[0] for i in range(len(self.point_names))]
         )
+
+    def rougher(self, factor: float) -> ExactStatistics:
+        """Return the statistics for a road whose elevation is so many times larger."""
+        square = factor**2
+        return replace(
+            self,
+            variance={name: square * value for name, value in self.variance.items()},
+            processes={name: value.rougher(factor) for name, value in self.processes.items()},
+            band_variance=square * self.band_variance,
+        )
+
+    def _in_bands(self, levels: Array) -> Array:
+        out = np.full((len(self.point_names), len(self.mid_band)), np.nan)
+        out[:, self.resolved] = levels.T
+        return out
 
 
 @dataclass(kw_only=True, eq=False)
@@ -126,22 +155,17 @@ def exact_statistics(
     for answer in answers:
         _add(sums, answer, filters)
     still = np.moveaxis(mean.velocity, 0, -1)
-    event, running = _bands(sums.fine.get("bands", np.zeros(0)), still, filters, fs)
-    n_points = len(mean.point_names)
-    levels = np.full((2, n_points, len(mid_band)), np.nan)
-    levels[:, :, resolved] = event, running
-    names = ("displacement", "velocity", "acceleration")
+    shape = (len(filters), *still.shape)
+    names = ("displacement", "velocity", "acceleration", "contact_forces")
     return ExactStatistics(
         time=mean.time,
         mean={name: getattr(mean, name) for name in names},
-        std={name: np.sqrt(sums.fine[name]) for name in names},
-        contact_mean=mean.contact_forces,
-        contact_std=np.sqrt(sums.fine["contact_forces"]),
+        variance={name: sums.fine[name] for name in names},
+        processes={name: _process(sums, mean, name) for name in ("velocity", "acceleration")},
         mid_band=mid_band,
         resolved=resolved,
-        band_event=levels[0],
-        band_running=levels[1],
-        peaks={name: _process(sums, mean, name) for name in names[1:]},
+        band_mean=np.reshape([signal.sosfilt(sos, still, axis=-1) for sos in filters], shape),
+        band_variance=np.reshape(sums.fine["bands"], shape),
         quadrature_error=_quadrature_error(sums),
         n_waves=sums.n_waves,
         point_names=mean.point_names,
@@ -163,12 +187,16 @@ def _add(sums: _Sums, answer: Harmonics, filters: list[Array]) -> None:
         sums.add(f"cross {name}", np.sum(power * both.real, axis=0))
         sums.add(f"turn {name}", np.sum(power * both.imag, axis=0))
     velocity = np.moveaxis(answer.velocity, 1, -1)
-    energy = [
-        np.sum(power * np.abs(signal.sosfilt(sos, velocity, axis=-1)) ** 2, axis=0)
-        for sos in filters
-    ]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        energy = list(pool.map(lambda sos: _energy(sos, velocity, answer.power), filters))
     sums.add("bands", np.array(energy).reshape(len(filters), *velocity.shape[1:]))
     sums.n_waves += len(answer.power)
+
+
+def _energy(sos: Array, velocity: Array, power: Array) -> Array:
+    """Return the variance that waves give a band: cosine and sine are filtered apart."""
+    parts = (signal.sosfilt(sos, part, axis=-1) for part in (np.real(velocity), np.imag(velocity)))
+    return np.sum([np.einsum("w,wps->ps", power, part**2) for part in parts], axis=0)
 
 
 def _derivative(value: Array, phase: Array, time: Array) -> Array:
@@ -177,20 +205,6 @@ def _derivative(value: Array, phase: Array, time: Array) -> Array:
     slow = value * turn
     speed = np.gradient(phase, time, axis=1)[:, :, None]
     return (np.gradient(slow, time, axis=1) + 1j * speed * slow) / turn
-
-
-def _bands(energy: Array, still: Array, filters: list[Array], fs: float) -> tuple[Array, Array]:
-    """Return event and running levels of each point and band."""
-    width = round(_WINDOW * fs)
-    event, running = [], []
-    for sos, variance in zip(filters, energy, strict=True):
-        square = variance + signal.sosfilt(sos, still, axis=-1) ** 2
-        event.append(np.sqrt(square.mean(axis=-1)))
-        total = np.cumsum(square, axis=-1)
-        total[..., width:] = total[..., width:] - total[..., :-width]
-        running.append(np.sqrt(total.max(axis=-1) / width))
-    shape = (len(filters), still.shape[0])
-    return np.reshape(event, shape).T, np.reshape(running, shape).T
 
 
 def _process(sums: _Sums, mean: MeanResponse, name: str) -> Process:

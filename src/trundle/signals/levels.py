@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from concurrent.futures import ThreadPoolExecutor
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -76,16 +78,13 @@ def band_levels(
     """
     if averaging != "event":
         samples = _faded_out(samples, round(_WINDOW * sampling_frequency))
-    return np.stack(
-        [
-            averaged_rms(
-                signal.sosfilt(band_filter(f, sampling_frequency), samples, axis=-1),
-                sampling_frequency,
-                averaging,
-            )
-            for f in mid_band
-        ]
-    )
+
+    def level(f: float) -> Array:
+        filtered = signal.sosfilt(band_filter(f, sampling_frequency), samples, axis=-1)
+        return averaged_rms(filtered, sampling_frequency, averaging)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return np.stack(list(pool.map(level, mid_band)))
 
 
 def _faded_out(samples: Array, n_steps: int) -> Array:

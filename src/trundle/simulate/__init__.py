@@ -6,14 +6,13 @@ from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration,
 from trundle.simulate.ensemble import batches, contact_forces, ensemble
 from trundle.simulate.harmonics import (
     Harmonics,
-    MeanResponse,
     Waves,
     harmonics,
     mean_response,
     place_waves,
 )
 from trundle.simulate.prepared import PreparedFloor, prepare
-from trundle.simulate.runs import Runs
+from trundle.simulate.runs import MeanResponse, Runs
 
 __all__ = [
     "Coupled",

@@ -12,7 +12,10 @@ from trundle.route import Hat
 from trundle.simulate.crossing import Crossing, Interaction
 from trundle.structure import Floor
 
-__all__ = ["fitness_warnings"]
+__all__ = ["LOST_CONTACT", "contact_warnings", "fitness_warnings"]
+
+LOST_CONTACT = "loss of contact"
+"""Subject of the warning about wheels that would have to pull."""
 
 _HARMONICS = 4  # multiples of V / h that the hat function excites noticeably
 _NEAR = 0.05  # relative distance within which such a frequency counts as on a mode
@@ -42,7 +45,7 @@ def fitness_warnings(
         Contact forces [N].
     """
     found = [
-        *_lost_contact(forces),
+        *contact_warnings(float(np.mean(np.any(forces < 0.0, axis=(0, 1))))),
         *_time_step(method),
         *_truncation(method),
         *_rayleigh(method),
@@ -53,18 +56,23 @@ def fitness_warnings(
     return tuple(dict.fromkeys(found))
 
 
-def _lost_contact(forces: Array) -> list[FitnessWarning]:
-    pulled = forces < 0.0
-    if not pulled.any():
-        return []
-    share = pulled.any(axis=(0, 1)).mean()
-    return [
+def contact_warnings(share: float) -> tuple[FitnessWarning, ...]:
+    """Return the doubt about runs in which a wheel would pull on the floor.
+
+    Parameters
+    ----------
+    share : float
+        Share of such runs, 0 to 1.
+    """
+    if share == 0.0:
+        return ()
+    return (
         FitnessWarning(
-            subject="loss of contact",
+            subject=LOST_CONTACT,
             message=f"a wheel would pull on the floor in {100 * share:.3g} % of the runs; "
             "the linear vehicle cannot lift off, so those runs are not what would happen",
-        )
-    ]
+        ),
+    )
 
 
 def _time_step(method: Interaction) -> list[FitnessWarning]:

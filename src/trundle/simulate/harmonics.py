@@ -23,9 +23,10 @@ from trundle.simulate._schedule import RoadUnderWheels
 from trundle.simulate.crossing import Crossing, Interaction
 from trundle.simulate.ensemble import as_tuple, batch_size
 from trundle.simulate.prepared import PreparedFloor, prepare
+from trundle.simulate.runs import MeanResponse
 from trundle.structure import Floor
 
-__all__ = ["Harmonics", "MeanResponse", "Waves", "harmonics", "mean_response", "place_waves"]
+__all__ = ["Harmonics", "Waves", "harmonics", "mean_response", "place_waves"]
 
 Progress = Callable[[float], None]
 
@@ -47,30 +48,6 @@ class Waves:
     n: Float[Array, " waves"]
     power: Float[Array, " waves"]
     coarse_power: Float[Array, " waves"]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MeanResponse:
-    """Hold the response without roughness: the static loads that move over the floor.
-
-    Attributes
-    ----------
-    time : ndarray of float, shape (n_steps,)
-        Time of the record [s].
-    displacement, velocity, acceleration : ndarray of float, shape (n_steps, n_points)
-        Response at the points, up positive.
-    contact_forces : ndarray of float, shape (n_steps, n_contacts)
-        Forces under the wheels [N].
-    point_names : tuple of str
-        Names of the points.
-    """
-
-    time: Float[Array, " steps"]
-    displacement: Float[Array, "steps points"]
-    velocity: Float[Array, "steps points"]
-    acceleration: Float[Array, "steps points"]
-    contact_forces: Float[Array, "steps contacts"]
-    point_names: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

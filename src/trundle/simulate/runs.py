@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -10,7 +10,31 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 
-__all__ = ["Runs"]
+__all__ = ["MeanResponse", "Runs"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeanResponse:
+    """Hold the response without roughness: the static loads that move over the floor.
+
+    Attributes
+    ----------
+    time : ndarray of float, shape (n_steps,)
+        Time of the record [s].
+    displacement, velocity, acceleration : ndarray of float, shape (n_steps, n_points)
+        Response at the points, up positive.
+    contact_forces : ndarray of float, shape (n_steps, n_contacts)
+        Forces under the wheels [N].
+    point_names : tuple of str
+        Names of the points.
+    """
+
+    time: Float[Array, " steps"]
+    displacement: Float[Array, "steps points"]
+    velocity: Float[Array, "steps points"]
+    acceleration: Float[Array, "steps points"]
+    contact_forces: Float[Array, "steps contacts"]
+    point_names: tuple[str, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,6 +104,40 @@ class Runs:
         This is the paper's measure; it falls as the record is made longer.
         """
         return np.sqrt(np.mean(self.velocity**2, axis=1))
+
+    def tension_share(self) -> Float[Array, " contacts"]:
+        """Return the share of runs in which each contact would have to pull at some time."""
+        return np.mean((self.contact_forces < 0.0).any(axis=1), axis=0)
+
+    def only(self, n_runs: int) -> Runs:
+        """Return the first runs, without holding on to the others' histories."""
+        return replace(
+            self,
+            displacement=self.displacement[:n_runs].copy(),
+            velocity=self.velocity[:n_runs].copy(),
+            acceleration=self.acceleration[:n_runs].copy(),
+            contact_forces=self.contact_forces[:n_runs].copy(),
+        )
+
+    def rougher(self, mean: MeanResponse, factor: float) -> Runs:
+        """Return what the same runs give on roads whose elevations are so many times larger.
+
+        Exact, for the system is linear: what a road adds to the response without roughness is
+        proportional to it.
+        """
+        if factor == 1.0:
+            return self
+
+        def about(still: Array, values: Array) -> Array:
+            return still + factor * (values - still)
+
+        return replace(
+            self,
+            displacement=about(mean.displacement, self.displacement),
+            velocity=about(mean.velocity, self.velocity),
+            acceleration=about(mean.acceleration, self.acceleration),
+            contact_forces=about(mean.contact_forces, self.contact_forces),
+        )
 
     def __str__(self) -> str:
         """Summarise the ensemble in a few lines."""

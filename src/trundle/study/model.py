@@ -92,7 +92,7 @@ class Assessment:
         Name of the method whose result is assessed.
     percentile : float
         Share of runs that a level must cover, 0 to 100.
-    averaging : {"max_1s", "slow", "event"}
+    averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of band levels.
     """
 

@@ -244,7 +244,7 @@ class CriteriaSection(Section):
     curves: Annotated[tuple[str, ...], Field(min_length=1)]
     method: Name
     percentile: Annotated[Number, Field(gt=0.0, le=100.0)] = 95.0
-    averaging: Literal["max_1s", "slow", "event"] = "max_1s"
+    averaging: Literal["max_1s", "slow", "fast", "event"] = "max_1s"
 
 
 class PrintedSection(Section):

@@ -20,7 +20,9 @@ import xarray as xr
 
 from trundle import __version__
 from trundle.errors import InputError
-from trundle.study.run import Cell, CellKey, StudyResult
+from trundle.response import ExactStatistics, percentile_interval
+from trundle.study.cells import Cell, CellKey
+from trundle.study.run import StudyResult
 
 __all__ = ["check_target", "new_results_folder", "provenance", "uninterrupted", "write_results"]
 
@@ -208,7 +210,28 @@ def summary_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
             ):
                 for share in (5, 50, 95):
                     row[f"{name}_p{share:02d}_{unit}"] = float(np.percentile(values, share))
+                low, high = percentile_interval(values, 95.0)
+                row[f"{name}_p95_low_{unit}"], row[f"{name}_p95_high_{unit}"] = low, high
+            row |= _exact_columns(cell, i)
             yield row
+
+
+def _exact_columns(cell: Cell, point: int) -> dict[str, float]:
+    """Return the exact statistics of a cell at a point; not-a-number without any."""
+    exact = cell.exact
+    return {
+        "exact_rms_velocity_m_s": np.nan if exact is None else float(exact.rms()[point]),
+        "exact_rms_acceleration_m_s2": (
+            np.nan if exact is None else float(exact.rms("acceleration")[point])
+        ),
+        "exact_peak_acceleration_p50_m_s2": (
+            np.nan if exact is None else float(exact.peak(50.0)[point])
+        ),
+        "exact_peak_acceleration_p95_m_s2": (
+            np.nan if exact is None else float(exact.peak(95.0)[point])
+        ),
+        "exact_quadrature_error": np.nan if exact is None else exact.quadrature_error,
+    }
 
 
 def _verdict_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
@@ -285,6 +308,7 @@ def _summary_dataset(result: StudyResult) -> xr.Dataset:
     cases, roads, methods = _grid(result)
     cell = ("case", "road", _METHOD, "run", "point")
     first = next(iter(result.cells.values()))
+    first_bands = len(first.spectra.mid_band)
 
     def variable(
         dims: tuple[str, ...],
@@ -308,6 +332,20 @@ def _summary_dataset(result: StudyResult) -> xr.Dataset:
                 "m/s",
                 f"one-third-octave RMS velocity, {first.spectra.averaging}",
             ),
+            "exact_rms_velocity": variable(
+                (*cell[:3], "point"),
+                lambda c: _exact(c, lambda e: e.rms(), len(result.study.points)),
+                "m/s",
+                "root of the mean square velocity over record and all roads, without sampling",
+            ),
+            "exact_band_velocity": variable(
+                (*cell[:3], "point", "band"),
+                lambda c: _exact(
+                    c, lambda e: e.band_event(), (len(result.study.points), first_bands)
+                ),
+                "m/s",
+                "one-third-octave RMS velocity, whole event, over all roads, without sampling",
+            ),
         },
         coords={
             "case": cases,
@@ -320,6 +358,12 @@ def _summary_dataset(result: StudyResult) -> xr.Dataset:
             "point_y": ("point", [p[1] for p in result.study.points.values()], {"units": "m"}),
         },
     )
+
+
+def _exact(
+    cell: Cell, pick: Callable[[ExactStatistics], np.ndarray], shape: int | tuple[int, int]
+) -> np.ndarray:
+    return np.full(shape, np.nan) if cell.exact is None else pick(cell.exact)
 
 
 def _history_dataset(result: StudyResult, method: str) -> xr.Dataset:

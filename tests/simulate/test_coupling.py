@@ -23,7 +23,7 @@ from trundle.simulate import (
     ensemble,
     prepare,
 )
-from trundle.simulate._schedule import lay_out, operator_rows, roads_under_wheels
+from trundle.simulate._schedule import operator_rows, roads_under_wheels, timeline_of
 from trundle.vehicle import articulated_truck_5_axle, container_truck_40ft, quarter_car
 
 DAMPING = Rayleigh(alpha=0.5, beta=0.001)
@@ -59,7 +59,7 @@ def monolithic(floor, crossings, method, *, seed, duration):
     convective block V H' that makes them non-symmetric.
     """
     dt = method.integration.dt
-    timeline = lay_out(crossings, dt, duration)
+    timeline = timeline_of(crossings, dt, duration)
     road = roads_under_wheels(crossings, timeline, range(1), seed)
     rows = operator_rows(floor, crossings, timeline, method.contact)
     vehicle = crossings[0].vehicle
@@ -213,7 +213,7 @@ def test_residual_flexibility_removes_the_truncation_error_of_the_static_part():
     assert prepared.modes.n_modes < 40
     runs = ensemble(prepared, way, method=method, points=POINTS, n_runs=1, seed=0, duration=14.0)
     step = 700  # t = 7 s: the front axle at 7 m
-    rows = operator_rows(floor, (way,), lay_out((way,), 0.01, 14.0), Hermite())
+    rows = operator_rows(floor, (way,), timeline_of((way,), 0.01, 14.0), Hermite())
     n = way.vehicle.n_contacts
     load = -rows.matrix(rows.value)[step * n : (step + 1) * n].T @ way.vehicle.static_forces
     static = sparse_solver.factorise(floor.stiffness).solve(load)
@@ -310,7 +310,7 @@ def test_a_standing_start_stays_at_rest_until_the_truck_moves(integration):
     for kind in (Decoupled, Coupled):
         method = kind(integration=integration, damping=DAMPING)
         runs = ensemble(floor, way, method=method, points=POINTS, n_runs=1, seed=0, duration=2.0)
-        rows = operator_rows(floor, (way,), lay_out((way,), 0.01, 2.0), Hermite())
+        rows = operator_rows(floor, (way,), timeline_of((way,), 0.01, 2.0), Hermite())
         load = -rows.matrix(rows.value)[:3].T @ way.vehicle.static_forces
         static = sparse_solver.factorise(floor.stiffness).solve(load)
         reader = contact_rows(
@@ -345,7 +345,7 @@ def test_every_method_drives_over_the_same_road():
     heights = []
     for entry, dt in ((Ramp(length=1.0), 0.02), (DriveIn(length=3.0), 0.005)):
         way = crossing(entry=entry, run_in=7.3)
-        timeline = lay_out((way,), dt, 3.0)
+        timeline = timeline_of((way,), dt, 3.0)
         (profile,) = _profiles_of(way, np.zeros(1), 8.0, timeline, run_generator(1, "way", 0))
         heights.append(profile.at(np.linspace(-10.0, 20.0, 50))[0])
     np.testing.assert_allclose(heights[0], heights[1], rtol=1e-12)

@@ -24,10 +24,10 @@ from trundle.route import DriveIn, Hermite, Route
 from trundle.simulate import Coupled, Crossing, ensemble, prepare
 from trundle.simulate import _march as march
 from trundle.simulate._block_march import Steps, drive_in_blocks
-from trundle.simulate._drive import _springs
 from trundle.simulate._floors import FullFloor
 from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._schedule import lay_out, operator_rows, roads_under_wheels
+from trundle.simulate._schedule import operator_rows, roads_under_wheels, timeline_of
+from trundle.simulate.layout import _springs
 from trundle.vehicle import container_truck_40ft, quarter_car
 
 CASE = "Always"
@@ -52,7 +52,7 @@ def way(vehicle):
 def laid_out(floor, crossing, method, duration):
     """Lay out production's own pieces, whose histories production does not keep."""
     prepared = prepare(floor, method.integration, method.damping)
-    timeline = lay_out((crossing,), method.integration.dt, duration)
+    timeline = timeline_of((crossing,), method.integration.dt, duration)
     road = roads_under_wheels((crossing,), timeline, range(1), 0)
     rows = operator_rows(floor, (crossing,), timeline, method.contact)
     return prepared, timeline, road, rows

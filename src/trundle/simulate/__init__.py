@@ -11,6 +11,7 @@ from trundle.simulate.harmonics import (
     mean_response,
     place_waves,
 )
+from trundle.simulate.layout import Layout, lay_out
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import MeanResponse, Runs
 
@@ -21,6 +22,7 @@ __all__ = [
     "Harmonics",
     "Integration",
     "Interaction",
+    "Layout",
     "MeanResponse",
     "Modal",
     "ModalRatio",
@@ -34,6 +36,7 @@ __all__ = [
     "contact_forces",
     "ensemble",
     "harmonics",
+    "lay_out",
     "mean_response",
     "place_waves",
     "prepare",

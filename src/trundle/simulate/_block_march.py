@@ -222,7 +222,7 @@ class _March:
             if maps is not None:
                 x = self._x[number]
                 outputs[:, part] = maps.points_by_state @ x + maps.points_by_forces @ every
-                gained = maps.state_by_forces @ every
+                gained = maps.state_by_forces @ every[maps.standing]
                 self._x[number] = _advance(maps.state_by_state, gained, x)
 
         for _ in self._pool.map(carry, range(len(self._slices))):
@@ -244,8 +244,8 @@ class _March:
         dynamic += maps.by_vehicle @ z
         dynamic += maps.by_before @ before
         dynamic += np.outer(maps.by_weight, weight)
-        if maps.by_floor is not None:
-            dynamic += maps.by_floor @ self._x[number]
+        if maps.floor_rows is not None:
+            dynamic += maps.by_floor @ (maps.floor_rows @ self._x[number])
         every = np.vstack([before, dynamic])
         self._z[:, part] = maps.vehicle_by_vehicle @ z + maps.vehicle_by_forces @ every
         self._dynamic[:, part] = dynamic[-self._n :]

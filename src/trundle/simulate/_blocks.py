@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from trundle._typing import Array
 from trundle.dynamics import ExactRecursion, ModalRecursion
@@ -34,8 +34,11 @@ class ContactMaps:
 
     Attributes
     ----------
-    by_floor : ndarray or None
-        The floor's state before the block; None on rigid ground.
+    floor_rows : ndarray of float or None
+        What the floor's state before the block would give contacts that stand on it; None
+        where none does.
+    by_floor : ndarray of float
+        What those contacts' own part makes of all forces.
     by_vehicle, by_before : ndarray of float
         The vehicle's state and the dynamic forces before the block.
     by_weight : ndarray of float, shape (n_forces,)
@@ -47,7 +50,8 @@ class ContactMaps:
         the block on.
     """
 
-    by_floor: Float[Array, "forces state"] | None
+    floor_rows: Float[Array, "standing state"] | None
+    by_floor: Float[Array, "forces standing"]
     by_vehicle: Float[Array, "forces vehicle"]
     by_before: Float[Array, "forces contacts"]
     by_weight: Float[Array, " forces"]
@@ -67,13 +71,16 @@ class FloorMaps:
     state_by_state : tuple of ndarray, shapes (n_modes, 1)
         Displacement by displacement and by velocity, then velocity by both.
     state_by_forces : ndarray of float
-        What all forces from the step before the block on add to the state.
+        What forces from the step before the block on add to the state.
+    standing : ndarray of int
+        Which of all those forces they are: those of contacts that stand on the floor.
     """
 
     points_by_state: Float[Array, "outputs state"]
     points_by_forces: Float[Array, "outputs all_forces"]
     state_by_state: tuple[Array, ...]
-    state_by_forces: Float[Array, "state all_forces"]
+    state_by_forces: Float[Array, "state standing_forces"]
+    standing: Int[Array, " standing_forces"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -157,18 +164,23 @@ def contact_block(
     n = len(static)
     on_dynamic = _toeplitz(-vehicle.push_lag, -vehicle.push_start, n_steps)
     on_total = np.zeros_like(on_dynamic)
-    on_state, floor_maps = None, None
+    floor_rows, standing, maps = None, np.zeros(0, dtype=np.intp), None
     if floor is not None and powers is not None:
         rows = _contact_rows(floor, first, n_steps, stiffness, damping)
-        on_total = _floor_influence(floor, powers, rows, first, n_steps)
-        _add_residual(on_total, floor, first, stiffness, damping)
-        on_state = _on_state(rows, powers.phi[:n_steps]).reshape(n_steps * n, -1)
-        floor_maps = _floor_maps(floor, powers, first, n_steps)
+        on_floor = np.flatnonzero(rows.any(axis=(0, 1, 3)))
+        if len(on_floor):
+            on_total = _floor_influence(floor, powers, rows, first, n_steps)
+            _add_residual(on_total, floor, first, stiffness, damping)
+            standing = (np.arange(n_steps)[:, None] * n + on_floor).ravel()
+            late = _on_state(rows[:, :, on_floor], powers.phi[:n_steps])
+            floor_rows = late.reshape(len(standing), -1)
+        maps = _floor_maps(floor, powers, first, n_steps)
     both = (on_dynamic + on_total).reshape(n_steps * n, (n_steps + 1) * n)
     solve = np.linalg.inv(np.eye(n_steps * n) - both[:, n:])
     weight = on_total.reshape(n_steps * n, -1) @ np.tile(static, n_steps + 1)
     contact = ContactMaps(
-        by_floor=None if on_state is None else solve @ on_state,
+        floor_rows=floor_rows,
+        by_floor=solve[:, standing],
         by_vehicle=-solve @ vehicle.push_by_state[: n_steps * n],
         by_before=solve @ both[:, :n],
         by_weight=solve @ weight,
@@ -176,7 +188,7 @@ def contact_block(
         vehicle_by_vehicle=vehicle.phi[n_steps - 1],
         vehicle_by_forces=np.hstack([vehicle.start[n_steps - 1], *vehicle.lag[:n_steps][::-1]]),
     )
-    return Block(n_steps=n_steps, contact=contact, floor=floor_maps)
+    return Block(n_steps=n_steps, contact=contact, floor=maps)
 
 
 def load_block(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int) -> Block:
@@ -204,12 +216,15 @@ def _floor_maps(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int
     at = np.arange(n_steps)
     points_by_forces[at, 2 * powers.n_points :, at + 1] += own
     gains = np.concatenate([powers.start[n_steps - 1][None], powers.lag[:n_steps][::-1]])
-    state_by_forces = -np.einsum("jam,jcm->amjc", gains, load).reshape(2 * n_modes, -1)
+    on_floor = np.flatnonzero(load.any(axis=(0, 2)))
+    standing = (np.arange(n_steps + 1)[:, None] * n + on_floor).ravel()
+    state_by_forces = -np.einsum("jam,jcm->amjc", gains, load[:, on_floor])
     return FloorMaps(
         points_by_state=powers.points_by_state[: n_steps * outputs],
         points_by_forces=points_by_forces.reshape(n_steps * outputs, -1),
         state_by_state=tuple(powers.phi[n_steps - 1].reshape(4, -1)[:, :, None]),
-        state_by_forces=state_by_forces,
+        state_by_forces=state_by_forces.reshape(2 * n_modes, -1),
+        standing=standing,
     )
 
 

@@ -15,7 +15,7 @@ from trundle.route import ContactRows, ContactShape, StaticStart, contact_rows, 
 from trundle.simulate.crossing import Crossing
 from trundle.structure import Floor
 
-__all__ = ["RoadUnderWheels", "Timeline", "lay_out", "operator_rows", "roads_under_wheels"]
+__all__ = ["RoadUnderWheels", "Timeline", "operator_rows", "roads_under_wheels", "timeline_of"]
 
 _TOGETHER = 64  # roads laid beside each other at once, for the runs are the last axis
 _MARGIN = 10.0  # m of road beyond the wheels, so that none runs off its profile
@@ -59,7 +59,7 @@ class RoadUnderWheels:
     rate: Float[Array, "steps contacts runs"]
 
 
-def lay_out(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Timeline:
+def timeline_of(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Timeline:
     """Return the timeline of all crossings, run-in first."""
     static = [isinstance(crossing.entry, StaticStart) for crossing in crossings]
     if any(static) and not all(static):

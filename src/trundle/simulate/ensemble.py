@@ -8,13 +8,11 @@ import numpy as np
 
 from trundle._checks import count
 from trundle._typing import Array
-from trundle.dynamics import Modal
-from trundle.errors import InputError
-from trundle.simulate._drive import Drive, lay_out_drive, rigid_drive
 from trundle.simulate._schedule import roads_under_wheels
 from trundle.simulate.crossing import Crossing, Integration, Interaction
 from trundle.simulate.fitness import fitness_warnings
-from trundle.simulate.prepared import PreparedFloor, prepare
+from trundle.simulate.layout import Layout, lay_out, lay_out_on_rigid_ground
+from trundle.simulate.prepared import PreparedFloor
 from trundle.simulate.runs import Runs
 from trundle.structure import Floor
 
@@ -70,22 +68,16 @@ def ensemble(
     UnstableStepError
         A number stopped being finite.
     """
-    whole = batches(
-        floor, crossings, method=method, points=points, runs=range(count("n_runs", n_runs)),
-        seed=seed, duration=duration, batch=n_runs, progress=progress,
-    )  # fmt: skip
-    return next(whole)
+    layout = lay_out(floor, crossings, method=method, points=points, duration=duration)
+    runs = range(count("n_runs", n_runs))
+    return next(batches(layout, runs=runs, seed=seed, batch=n_runs, progress=progress))
 
 
 def batches(
-    floor: Floor | PreparedFloor,
-    crossings: Crossing | Sequence[Crossing],
+    layout: Layout,
     *,
-    method: Interaction,
-    points: Mapping[str, tuple[float, float]],
     runs: range,
     seed: int,
-    duration: float | None = None,
     batch: int | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Runs]:
@@ -93,20 +85,12 @@ def batches(
 
     Parameters
     ----------
-    floor : Floor or PreparedFloor
-        The floor.
-    crossings : Crossing or sequence of Crossing
-        One vehicle, or several at once.
-    method : Decoupled or Coupled
-        Interaction, integration, damping and contact.
-    points : mapping of str to (x, y)
-        Where the response is read [m].
+    layout : Layout
+        What the runs share, from `lay_out`.
     runs : range
         Numbers of the runs; a run's road depends on the seed and its number alone.
     seed : int
         Seed of all roads.
-    duration : float, optional
-        Length of the record [s], as in `ensemble`.
     batch : int, optional
         Runs in a batch; as many as 256 MB of histories hold unless given.
     progress : callable, optional
@@ -117,39 +101,39 @@ def batches(
     Runs
         The next runs, with their histories.
     """
-    many = as_tuple(crossings)
-    if not points:
-        raise InputError("name at least one point where the response is to be read")
-    if isinstance(floor, Floor):
-        floor = prepare(floor, method.integration, method.damping)
-    drive = lay_out_drive(floor, many, method=method, points=points, duration=duration)
-    size = batch or batch_size(drive, len(points))
+    prepared, crossings = layout.prepared, layout.crossings
+    assert prepared is not None  # what `lay_out` lays out has a floor
+    size = batch or batch_size(layout)
     done, total = 0, len(runs)
     for start in range(0, total, size):
         part = runs[start : start + size]
-        road = roads_under_wheels(many, drive.timeline, part, seed)
+        road = roads_under_wheels(crossings, layout.timeline, part, seed)
         share = (done / total, len(part) / total)
-        record = drive.over(road, progress=_part_of(progress, *share))
+        record = layout.over(road, progress=_part_of(progress, *share))
+        forces = record.forces
         yield Runs(
-            time=drive.time,
+            time=layout.time,
             displacement=np.transpose(record.displacement, (2, 0, 1)),
             velocity=np.transpose(record.velocity, (2, 0, 1)),
             acceleration=np.transpose(record.acceleration, (2, 0, 1)),
-            contact_forces=np.transpose(record.forces, (2, 0, 1)),
-            point_names=tuple(points),
-            contact_names=contact_names(many),
+            contact_forces=np.transpose(forces, (2, 0, 1)),
+            point_names=layout.point_names,
+            contact_names=layout.contact_names,
             seed=seed,
-            method=str(method),
-            f_max=highest_frequency(method.integration),
-            warnings=fitness_warnings(many, method, floor.floor, floor.modes, record.forces),
+            method=str(layout.method),
+            f_max=layout.f_max,
+            warnings=fitness_warnings(
+                crossings, layout.method, prepared.floor, prepared.modes, forces
+            ),
         )
         done += len(part)
 
 
-def batch_size(drive: Drive, n_points: int) -> int:
+def batch_size(layout: Layout) -> int:
     """Return how many runs 256 MB hold, a number that does not depend on the machine."""
-    n_all, n_contacts = drive.timeline.station.shape
-    values = 2 * n_all * n_contacts + len(drive.time) * (3 * n_points + n_contacts)
+    n_all, n_contacts = layout.timeline.station.shape
+    each_step = 3 * len(layout.point_names) + n_contacts
+    values = 2 * n_all * n_contacts + len(layout.time) * each_step
     return int(np.clip(_BATCH_BYTES / (8.0 * values), 16, _MOST_RUNS))
 
 
@@ -165,37 +149,12 @@ def contact_forces(
     forces : ndarray of float, shape (n_runs, n_steps, n_contacts)
         Static and dynamic together, positive when pressing on the ground.
     """
-    drive = rigid_drive(crossing, integration, duration)
-    road = roads_under_wheels((crossing,), drive.timeline, range(n_runs), seed)
-    return drive.time, np.transpose(drive.over(road).forces, (2, 0, 1))
-
-
-def highest_frequency(integration: Integration) -> float:
-    """Return the highest frequency that a computation contains [Hz]."""
-    nyquist = 0.5 / integration.dt
-    return min(integration.f_max, nyquist) if isinstance(integration, Modal) else nyquist
-
-
-def contact_names(crossings: tuple[Crossing, ...]) -> tuple[str, ...]:
-    """Return the names of all contacts, with their route's where several drive."""
-    if len(crossings) == 1:
-        return crossings[0].vehicle.contact_names
-    return tuple(
-        f"{crossing.route.name} {name}"
-        for crossing in crossings
-        for name in crossing.vehicle.contact_names
-    )
+    layout = lay_out_on_rigid_ground(crossing, integration, duration)
+    road = roads_under_wheels((crossing,), layout.timeline, range(n_runs), seed)
+    return layout.time, np.transpose(layout.over(road).forces, (2, 0, 1))
 
 
 def _part_of(progress: Progress | None, start: float, length: float) -> Progress | None:
     if progress is None:
         return None
     return lambda share: progress(start + length * share)
-
-
-def as_tuple(crossings: Crossing | Sequence[Crossing]) -> tuple[Crossing, ...]:
-    """Return crossings as a tuple, at least one."""
-    many = (crossings,) if isinstance(crossings, Crossing) else tuple(crossings)
-    if not many:
-        raise InputError("an ensemble needs at least one crossing")
-    return many

@@ -7,7 +7,7 @@ as a cosine and a sine of the amplitude that the spectrum gives it. No sampling 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,13 +18,11 @@ from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand, track_coherence, wave_power
-from trundle.simulate._drive import Drive, lay_out_drive
 from trundle.simulate._schedule import RoadUnderWheels
-from trundle.simulate.crossing import Crossing, Interaction
-from trundle.simulate.ensemble import as_tuple, batch_size
-from trundle.simulate.prepared import PreparedFloor, prepare
+from trundle.simulate.crossing import Crossing
+from trundle.simulate.ensemble import batch_size
+from trundle.simulate.layout import Layout
 from trundle.simulate.runs import MeanResponse
-from trundle.structure import Floor
 
 __all__ = ["Harmonics", "Waves", "harmonics", "mean_response", "place_waves"]
 
@@ -117,60 +115,38 @@ def place_waves(
     return Waves(n=n, power=wave_power(road, band, n), coarse_power=coarse)
 
 
-def mean_response(
-    floor: Floor | PreparedFloor,
-    crossings: Crossing | Sequence[Crossing],
-    *,
-    method: Interaction,
-    points: Mapping[str, tuple[float, float]],
-    duration: float | None = None,
-) -> MeanResponse:
+def mean_response(layout: Layout) -> MeanResponse:
     """Return the response to the static loads alone, with given profiles but no random road."""
-    many, drive = _laid_out(floor, crossings, method, points, duration)
-    shape = (*drive.timeline.station.shape, 1)
+    timeline = layout.timeline
+    shape = (*timeline.station.shape, 1)
     road = RoadUnderWheels(elevation=np.zeros(shape), rate=np.zeros(shape))
-    for crossing, columns in _columns(many):
+    for crossing, columns in _columns(layout.crossings):
         if isinstance(crossing.road, Profile):
-            z, slope = crossing.road.at(drive.timeline.station[:, columns])
+            z, slope = crossing.road.at(timeline.station[:, columns])
             road.elevation[:, columns, 0] = z
-            road.rate[:, columns, 0] = drive.timeline.speed[:, columns] * slope
-    record = drive.over(road)
+            road.rate[:, columns, 0] = timeline.speed[:, columns] * slope
+    record = layout.over(road)
     return MeanResponse(
-        time=drive.time,
+        time=layout.time,
         displacement=record.displacement[:, :, 0],
         velocity=record.velocity[:, :, 0],
         acceleration=record.acceleration[:, :, 0],
         contact_forces=record.forces[:, :, 0],
-        point_names=tuple(points),
+        point_names=layout.point_names,
     )
 
 
 def harmonics(
-    floor: Floor | PreparedFloor,
-    crossings: Crossing | Sequence[Crossing],
-    *,
-    method: Interaction,
-    points: Mapping[str, tuple[float, float]],
-    n_waves: int = 400,
-    duration: float | None = None,
-    progress: Progress | None = None,
+    layout: Layout, *, n_waves: int = 400, progress: Progress | None = None
 ) -> Iterator[Harmonics]:
     """Answer for the waves of every random road, some at a time.
 
     Parameters
     ----------
-    floor : Floor or PreparedFloor
-        The floor.
-    crossings : Crossing or sequence of Crossing
-        One vehicle, or several at once, whose roads are independent.
-    method : Decoupled or Coupled
-        Method; its integration must be `Modal`.
-    points : mapping of str to (x, y)
-        Where the response is read [m].
+    layout : Layout
+        What drives where, from `lay_out`; its integration must be `Modal`.
     n_waves : int
         Waves to each road; each costs two runs (times the wheel tracks of the vehicle).
-    duration : float, optional
-        Length of the record [s], as in `ensemble`.
     progress : callable, optional
         Told the share done.
 
@@ -180,33 +156,32 @@ def harmonics(
         Answers to the next waves. Sums of squares over all of them are variances.
     """
     n_waves = count("n_waves", n_waves)
-    if not isinstance(method.integration, Modal):
+    if not isinstance(layout.integration, Modal):
         raise InputError("exact statistics step the floor in its modes: choose Modal")
-    many, drive = _laid_out(floor, crossings, method, points, duration)
-    jobs = [(crossing, columns) for crossing, columns in _columns(many) if _is_random(crossing)]
+    jobs = [pair for pair in _columns(layout.crossings) if isinstance(pair[0].road, RoadClass)]
     if not jobs:
         raise InputError("no crossing drives on a random road: its response has no variance")
-    size = max(1, batch_size(drive, len(points)) // 2)
+    size = max(1, batch_size(layout) // 2)
     for place, (crossing, columns) in enumerate(jobs):
-        for answer, done in _of_one_road(drive, crossing, columns, n_waves, size):
+        for answer, done in _of_one_road(layout, crossing, columns, n_waves, size=size):
             if progress is not None:
                 progress((place + done) / len(jobs))
             yield answer
 
 
 def _of_one_road(
-    drive: Drive, crossing: Crossing, columns: slice, n_waves: int, size: int
+    layout: Layout, crossing: Crossing, columns: slice, n_waves: int, *, size: int
 ) -> Iterator[tuple[Harmonics, float]]:
     assert isinstance(crossing.road, RoadClass)  # the caller has looked
-    speed = float(drive.timeline.speed[:, columns].max())
+    speed = float(layout.timeline.speed[:, columns].max())
     waves = place_waves(
         crossing.road, crossing.band, n_waves, resonances=_resonances(crossing, speed)
     )
-    shortest = 2.0 * waves.n[-1] * speed * drive.integration.dt
+    shortest = 2.0 * waves.n[-1] * speed * layout.integration.dt
     if shortest > 1.0 + 1e-9:
         raise InputError(
             f"route {crossing.route.name!r}: waves of {waves.n[-1]:g} cycle/m at {speed:.3g} m/s "
-            f"need a time step of at most {drive.integration.dt / shortest:.3g} s"
+            f"need a time step of at most {layout.integration.dt / shortest:.3g} s"
         )
     tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
     distance = np.abs(tracks[:, None] - tracks)
@@ -214,9 +189,9 @@ def _of_one_road(
         for start in range(0, len(waves.n), size):
             part = slice(start, start + size)
             share = _mixing(waves.n[part], distance)[:, which, source]
-            road = _wave_road(drive, columns, waves.n[part], share)
+            road = _wave_road(layout, columns, waves.n[part], share)
             yield (
-                _answers(drive, road, waves, part, columns.start),
+                _answers(layout, road, waves, part, columns.start),
                 (source + min(1.0, part.stop / len(waves.n))) / len(tracks),
             )
 
@@ -227,9 +202,9 @@ def _mixing(n: Array, distance: Array) -> Array:
     return np.linalg.cholesky(ratio + 1e-10 * np.eye(len(distance)))
 
 
-def _wave_road(drive: Drive, columns: slice, n: Array, share: Array) -> RoadUnderWheels:
+def _wave_road(layout: Layout, columns: slice, n: Array, share: Array) -> RoadUnderWheels:
     """Return unit waves under the wheels: cosines first, then sines."""
-    timeline = drive.timeline
+    timeline = layout.timeline
     shape = (*timeline.station.shape, 2 * len(n))
     road = RoadUnderWheels(elevation=np.zeros(shape), rate=np.zeros(shape))
     angle = 2.0 * np.pi * timeline.station[:, columns, None] * n
@@ -242,13 +217,13 @@ def _wave_road(drive: Drive, columns: slice, n: Array, share: Array) -> RoadUnde
 
 
 def _answers(
-    drive: Drive, road: RoadUnderWheels, waves: Waves, part: slice, front: int
+    layout: Layout, road: RoadUnderWheels, waves: Waves, part: slice, front: int
 ) -> Harmonics:
-    record = drive.over(road, weight=np.zeros(road.elevation.shape[2]))
+    record = layout.over(road, weight=np.zeros(road.elevation.shape[2]))
     n = waves.n[part]
-    station = drive.timeline.station[drive.timeline.n_run_in :, front]
+    station = layout.timeline.station[layout.timeline.n_run_in :, front]
     return Harmonics(
-        time=drive.time,
+        time=layout.time,
         phase=2.0 * np.pi * n[:, None] * station,
         power=waves.power[part],
         coarse_power=waves.coarse_power[part],
@@ -273,25 +248,8 @@ def _resonances(crossing: Crossing, speed: float) -> Array:
     )
 
 
-def _laid_out(
-    floor: Floor | PreparedFloor,
-    crossings: Crossing | Sequence[Crossing],
-    method: Interaction,
-    points: Mapping[str, tuple[float, float]],
-    duration: float | None,
-) -> tuple[tuple[Crossing, ...], Drive]:
-    many = as_tuple(crossings)
-    if isinstance(floor, Floor):
-        floor = prepare(floor, method.integration, method.damping)
-    return many, lay_out_drive(floor, many, method=method, points=points, duration=duration)
-
-
 def _columns(crossings: tuple[Crossing, ...]) -> Iterator[tuple[Crossing, slice]]:
     at = 0
     for crossing in crossings:
         yield crossing, slice(at, at + crossing.vehicle.n_contacts)
         at += crossing.vehicle.n_contacts
-
-
-def _is_random(crossing: Crossing) -> bool:
-    return isinstance(crossing.road, RoadClass)

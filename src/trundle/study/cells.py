@@ -20,7 +20,7 @@ from trundle.response import (
     reduce_runs,
 )
 from trundle.signals import Averaging
-from trundle.simulate import PreparedFloor, Runs, batches, harmonics, mean_response
+from trundle.simulate import PreparedFloor, Runs, batches, harmonics, lay_out, mean_response
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
 from trundle.study.model import Case, MethodPlan, Study
 
@@ -28,7 +28,7 @@ __all__ = ["Cell", "CellKey", "History", "run_cells"]
 
 Progress = Callable[[float], None]
 
-_WAVES = 400  # shared among the roads of a case: no more than 800 runs' worth
+_WAVES = 240  # shared among the roads of a case: 480 runs' worth
 _SAMPLED_SHARE = 0.65  # of a case's time, against exact statistics
 
 
@@ -133,31 +133,29 @@ def _run_group(
 ) -> Iterator[tuple[str, Cell]]:
     case, method = job
     crossings = study.crossings(case, roads[0], method)
-    settings = {
-        "method": method.interaction,
-        "points": study.points,
-        "duration": study.duration,
-    }
-    mean = mean_response(floor, crossings, **settings)
+    layout = lay_out(
+        floor,
+        crossings,
+        method=method.interaction,
+        points=study.points,
+        duration=study.duration,
+    )
+    mean = mean_response(layout)
     first = study.roads[roads[0]].roughness
     factors = {name: float(np.sqrt(study.roads[name].roughness / first)) for name in roads}
     averaging = study.assessment.averaging if study.assessment else "max_1s"
     modal = isinstance(method.interaction.integration, Modal)
     collected: dict[str, _Collected] = {name: _Collected(averaging) for name in roads}
     sampled = _part(progress, 0.0, _SAMPLED_SHARE if modal else 1.0)
-    for runs in batches(
-        floor, crossings, runs=range(study.runs), seed=study.seed, progress=sampled, **settings
-    ):
+    for runs in batches(layout, runs=range(study.runs), seed=study.seed, progress=sampled):
         for name, factor in factors.items():
             collected[name].add(runs.rougher(mean, factor))
     exact = None
     if modal:
         answers = harmonics(
-            floor,
-            crossings,
+            layout,
             n_waves=max(2, _WAVES // len(crossings)),
             progress=_part(progress, _SAMPLED_SHARE, 1.0 - _SAMPLED_SHARE),
-            **settings,
         )
         exact = exact_statistics(mean, answers, f_max=collected[roads[0]].f_max)
     for name, factor in factors.items():

@@ -1,8 +1,8 @@
-"""Lay out a set of crossings over a prepared floor, and drive them over any roads."""
+"""Lay out a set of crossings over a floor, and drive them over any roads."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,8 @@ from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import (
     ExactRecursion,
     LinearSystem,
+    Modal,
+    ModalRatio,
     ModalRecursion,
     Newmark,
     NewmarkPropagator,
@@ -36,42 +38,78 @@ from trundle.simulate._march import (
 )
 from trundle.simulate._modal_floor import ModalFloor
 from trundle.simulate._residual import point_residual, residual_motion
-from trundle.simulate._schedule import RoadUnderWheels, Timeline, lay_out, operator_rows
-from trundle.simulate.crossing import Coupled, Crossing, Integration, Interaction
-from trundle.simulate.prepared import PreparedFloor
+from trundle.simulate._schedule import (
+    RoadUnderWheels,
+    Timeline,
+    operator_rows,
+    timeline_of,
+)
+from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
+from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.structure import Floor
 
-__all__ = ["Drive", "lay_out_drive", "rigid_drive"]
+__all__ = ["Layout", "lay_out", "lay_out_on_rigid_ground"]
 
 _TAIL = 5.0  # s of free decay after the last wheel has left, unless a duration is given
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Drive:
+class Layout:
     """Hold what all runs of an ensemble share: everything but the road.
 
     Attributes
     ----------
     crossings : tuple of Crossing
         Who drives where.
-    integration : Newmark or Modal
-        Time integration.
+    method : Decoupled or Coupled
+        By what method.
+    prepared : PreparedFloor or None
+        The floor; None is rigid ground.
+    point_names : tuple of str
+        Where the response is read.
     timeline : Timeline
         Where the wheels are.
     floor : ModalFloor, FullFloor or None
-        The floor under the wheels; None is rigid ground.
+        The floor under the wheels.
     residual : tuple of ContactRows and ndarray, or None
         Rows of the contacts, and static flexibility of the modes left out at the points.
-    coupled : bool
-        Whether the floor moves under the wheels.
     """
 
     crossings: tuple[Crossing, ...]
-    integration: Integration
+    method: Interaction
+    prepared: PreparedFloor | None
+    point_names: tuple[str, ...]
     timeline: Timeline
     floor: ModalFloor | FullFloor | None
     residual: tuple[ContactRows, Array] | None
-    coupled: bool
+
+    @property
+    def integration(self) -> Integration:
+        """Time integration."""
+        return self.method.integration
+
+    @property
+    def coupled(self) -> bool:
+        """Whether the floor moves under the wheels."""
+        return isinstance(self.method, Coupled) and self.floor is not None
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Names of all contacts, with their route's where several drive."""
+        if len(self.crossings) == 1:
+            return self.crossings[0].vehicle.contact_names
+        return tuple(
+            f"{crossing.route.name} {name}"
+            for crossing in self.crossings
+            for name in crossing.vehicle.contact_names
+        )
+
+    @property
+    def f_max(self) -> float:
+        """Highest frequency that the computation contains [Hz]."""
+        nyquist = 0.5 / self.integration.dt
+        modal = self.integration
+        return min(modal.f_max, nyquist) if isinstance(modal, Modal) else nyquist
 
     @property
     def time(self) -> Float[Array, " steps"]:
@@ -141,44 +179,74 @@ class Drive:
         return drive(law, floor, (vehicle, still, forces), timeline, road, progress=progress)
 
 
-def lay_out_drive(
-    prepared: PreparedFloor,
-    crossings: tuple[Crossing, ...],
+def lay_out(
+    floor: Floor | PreparedFloor,
+    crossings: Crossing | Sequence[Crossing],
     *,
     method: Interaction,
     points: Mapping[str, tuple[float, float]],
-    duration: float | None,
-) -> Drive:
-    """Lay out crossings over a prepared floor."""
-    _check_prepared(prepared, method)
+    duration: float | None = None,
+) -> Layout:
+    """Lay out crossings over a floor: all that their runs share.
+
+    Parameters
+    ----------
+    floor : Floor or PreparedFloor
+        The floor; prepare it once where several layouts share it.
+    crossings : Crossing or sequence of Crossing
+        One vehicle, or several at once.
+    method : Decoupled or Coupled
+        Interaction, integration, damping and contact.
+    points : mapping of str to (x, y)
+        Where the response is read [m].
+    duration : float, optional
+        Length of the record [s]; until 5 s after the last wheel has left unless given.
+
+    Raises
+    ------
+    InputError
+        A point or wheel off the floor, no point or no crossing, a floor prepared otherwise.
+    """
+    many = (crossings,) if isinstance(crossings, Crossing) else tuple(crossings)
+    if not many:
+        raise InputError("an ensemble needs at least one crossing")
+    if not points:
+        raise InputError("name at least one point where the response is to be read")
+    if isinstance(floor, Floor):
+        floor = prepare(floor, method.integration, method.damping)
+    _check_prepared(floor, method)
     dt = method.integration.dt
-    length = duration if duration is not None else _natural_duration(crossings)
-    timeline = lay_out(crossings, dt, positive("duration", length))
-    rows = operator_rows(prepared.floor, crossings, timeline, method.contact)
-    reader = _point_rows(prepared.floor, points)
+    length = duration if duration is not None else _natural_duration(many)
+    timeline = timeline_of(many, dt, positive("duration", length))
+    rows = operator_rows(floor.floor, many, timeline, method.contact)
+    reader = _point_rows(floor.floor, points)
     coupled = isinstance(method, Coupled)
     residual = None
-    if prepared.modes is not None and prepared.residual:
-        residual = (rows, point_residual(prepared.flexibility, prepared.modes, reader))
-    return Drive(
-        crossings=crossings,
-        integration=method.integration,
+    if floor.modes is not None and floor.residual:
+        residual = (rows, point_residual(floor.flexibility, floor.modes, reader))
+    return Layout(
+        crossings=many,
+        method=method,
+        prepared=floor,
+        point_names=tuple(points),
         timeline=timeline,
-        floor=_floor_under_wheels(prepared, rows, timeline, reader, coupled=coupled),
+        floor=_floor_under_wheels(floor, rows, timeline, reader, coupled=coupled),
         residual=residual,
-        coupled=coupled,
     )
 
 
-def rigid_drive(crossing: Crossing, integration: Integration, duration: float) -> Drive:
+def lay_out_on_rigid_ground(
+    crossing: Crossing, integration: Integration, duration: float
+) -> Layout:
     """Lay out a crossing over rigid ground."""
-    return Drive(
+    return Layout(
         crossings=(crossing,),
-        integration=integration,
-        timeline=lay_out((crossing,), integration.dt, duration),
+        method=Decoupled(integration=integration, damping=ModalRatio(ratio=0.0)),
+        prepared=None,
+        point_names=(),
+        timeline=timeline_of((crossing,), integration.dt, duration),
         floor=None,
         residual=None,
-        coupled=False,
     )
 
 

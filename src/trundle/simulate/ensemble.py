@@ -20,7 +20,7 @@ __all__ = ["batches", "contact_forces", "ensemble"]
 
 Progress = Callable[[float], None]
 
-_BATCH_BYTES = 256e6  # histories and roads held at once
+_BATCH_BYTES = 512e6  # histories and roads held at once
 _MOST_RUNS = 1024  # in a batch; more would gain nothing
 
 
@@ -92,7 +92,7 @@ def batches(
     seed : int
         Seed of all roads.
     batch : int, optional
-        Runs in a batch; as many as 256 MB of histories hold unless given.
+        Runs in a batch; as many as 512 MB of histories hold unless given.
     progress : callable, optional
         Told the share of all runs' steps done.
 
@@ -109,7 +109,7 @@ def batches(
         part = runs[start : start + size]
         road = roads_under_wheels(crossings, layout.timeline, part, seed)
         share = (done / total, len(part) / total)
-        record = layout.over(road, progress=_part_of(progress, *share))
+        record = layout.over(road, progress=part_of(progress, *share))
         forces = record.forces
         yield Runs(
             time=layout.time,
@@ -130,7 +130,7 @@ def batches(
 
 
 def batch_size(layout: Layout) -> int:
-    """Return how many runs 256 MB hold, a number that does not depend on the machine."""
+    """Return how many runs 512 MB hold, a number that does not depend on the machine."""
     n_all, n_contacts = layout.timeline.station.shape
     each_step = 3 * len(layout.point_names) + n_contacts
     values = 2 * n_all * n_contacts + len(layout.time) * each_step
@@ -154,7 +154,8 @@ def contact_forces(
     return layout.time, np.transpose(layout.over(road).forces, (2, 0, 1))
 
 
-def _part_of(progress: Progress | None, start: float, length: float) -> Progress | None:
+def part_of(progress: Progress | None, start: float, length: float) -> Progress | None:
+    """Return a callable that tells shares of a part of the whole."""
     if progress is None:
         return None
     return lambda share: progress(start + length * share)

@@ -20,7 +20,7 @@ from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand, track_coherence, wave_power
 from trundle.simulate._schedule import RoadUnderWheels
 from trundle.simulate.crossing import Crossing
-from trundle.simulate.ensemble import batch_size
+from trundle.simulate.ensemble import batch_size, part_of
 from trundle.simulate.layout import Layout
 from trundle.simulate.runs import MeanResponse
 
@@ -158,20 +158,46 @@ def harmonics(
     n_waves = count("n_waves", n_waves)
     if not isinstance(layout.integration, Modal):
         raise InputError("exact statistics step the floor in its modes: choose Modal")
-    jobs = [pair for pair in _columns(layout.crossings) if isinstance(pair[0].road, RoadClass)]
-    if not jobs:
+    sets = [
+        part
+        for crossing, columns in _columns(layout.crossings)
+        if isinstance(crossing.road, RoadClass)
+        for part in _wave_sets(layout, crossing, columns, n_waves)
+    ]
+    if not sets:
         raise InputError("no crossing drives on a random road: its response has no variance")
     size = max(1, batch_size(layout) // 2)
-    for place, (crossing, columns) in enumerate(jobs):
-        for answer, done in _of_one_road(layout, crossing, columns, n_waves, size=size):
-            if progress is not None:
-                progress((place + done) / len(jobs))
-            yield answer
+    total, done = sum(len(part.n) for part in sets), 0
+    for together in _filled(sets, size):
+        count_here = sum(len(part.n) for part in together)
+        share = (done / total, count_here / total)
+        yield _answers(layout, together, progress=part_of(progress, *share))
+        done += count_here
 
 
-def _of_one_road(
-    layout: Layout, crossing: Crossing, columns: slice, n_waves: int, *, size: int
-) -> Iterator[tuple[Harmonics, float]]:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _WaveSet:
+    """Waves of one road, as one independent source sends them to the wheels of one crossing."""
+
+    columns: slice  # contacts
+    n: Array
+    power: Array
+    coarse_power: Array
+    share: Array  # (n_waves, n_contacts): of the unit amplitude, at each wheel's track
+
+    def part(self, which: slice) -> _WaveSet:
+        return _WaveSet(
+            columns=self.columns,
+            n=self.n[which],
+            power=self.power[which],
+            coarse_power=self.coarse_power[which],
+            share=self.share[which],
+        )
+
+
+def _wave_sets(
+    layout: Layout, crossing: Crossing, columns: slice, n_waves: int
+) -> Iterator[_WaveSet]:
     assert isinstance(crossing.road, RoadClass)  # the caller has looked
     speed = float(layout.timeline.speed[:, columns].max())
     waves = place_waves(
@@ -184,16 +210,32 @@ def _of_one_road(
             f"need a time step of at most {layout.integration.dt / shortest:.3g} s"
         )
     tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
-    distance = np.abs(tracks[:, None] - tracks)
+    mixing = _mixing(waves.n, np.abs(tracks[:, None] - tracks))
     for source in range(len(tracks)):
-        for start in range(0, len(waves.n), size):
-            part = slice(start, start + size)
-            share = _mixing(waves.n[part], distance)[:, which, source]
-            road = _wave_road(layout, columns, waves.n[part], share)
-            yield (
-                _answers(layout, road, waves, part, columns.start),
-                (source + min(1.0, part.stop / len(waves.n))) / len(tracks),
-            )
+        yield _WaveSet(
+            columns=columns,
+            n=waves.n,
+            power=waves.power,
+            coarse_power=waves.coarse_power,
+            share=mixing[:, which, source],
+        )
+
+
+def _filled(sets: list[_WaveSet], size: int) -> Iterator[list[_WaveSet]]:
+    """Fill batches of so many waves, roads beside each other."""
+    together: list[_WaveSet] = []
+    room = size
+    for one in sets:
+        at = 0
+        while at < len(one.n):
+            part = one.part(slice(at, at + room))
+            together.append(part)
+            at, room = at + len(part.n), room - len(part.n)
+            if room == 0:
+                yield together
+                together, room = [], size
+    if together:
+        yield together
 
 
 def _mixing(n: Array, distance: Array) -> Array:
@@ -202,31 +244,39 @@ def _mixing(n: Array, distance: Array) -> Array:
     return np.linalg.cholesky(ratio + 1e-10 * np.eye(len(distance)))
 
 
-def _wave_road(layout: Layout, columns: slice, n: Array, share: Array) -> RoadUnderWheels:
-    """Return unit waves under the wheels: cosines first, then sines."""
+def _wave_road(layout: Layout, sets: list[_WaveSet]) -> RoadUnderWheels:
+    """Return unit waves under the wheels: all cosines first, then all sines."""
     timeline = layout.timeline
-    shape = (*timeline.station.shape, 2 * len(n))
+    total = sum(len(part.n) for part in sets)
+    shape = (*timeline.station.shape, 2 * total)
     road = RoadUnderWheels(elevation=np.zeros(shape), rate=np.zeros(shape))
-    angle = 2.0 * np.pi * timeline.station[:, columns, None] * n
-    turning = 2.0 * np.pi * timeline.speed[:, columns, None] * n
-    amplitude = share.T
-    wave = amplitude * np.cos(angle), amplitude * np.sin(angle)
-    road.elevation[:, columns] = np.concatenate(wave, axis=2)
-    road.rate[:, columns] = np.concatenate([-turning * wave[1], turning * wave[0]], axis=2)
+    at = 0
+    for part in sets:
+        cosine = slice(at, at + len(part.n))
+        sine = slice(total + cosine.start, total + cosine.stop)
+        angle = 2.0 * np.pi * timeline.station[:, part.columns, None] * part.n
+        turning = 2.0 * np.pi * timeline.speed[:, part.columns, None] * part.n
+        amplitude = part.share.T
+        waves = amplitude * np.cos(angle), amplitude * np.sin(angle)
+        road.elevation[:, part.columns, cosine] = waves[0]
+        road.elevation[:, part.columns, sine] = waves[1]
+        road.rate[:, part.columns, cosine] = -turning * waves[1]
+        road.rate[:, part.columns, sine] = turning * waves[0]
+        at = cosine.stop
     return road
 
 
-def _answers(
-    layout: Layout, road: RoadUnderWheels, waves: Waves, part: slice, front: int
-) -> Harmonics:
-    record = layout.over(road, weight=np.zeros(road.elevation.shape[2]))
-    n = waves.n[part]
-    station = layout.timeline.station[layout.timeline.n_run_in :, front]
+def _answers(layout: Layout, sets: list[_WaveSet], *, progress: Progress | None) -> Harmonics:
+    road = _wave_road(layout, sets)
+    weight = np.zeros(road.elevation.shape[2])
+    record = layout.over(road, weight=weight, progress=progress)
+    station = layout.timeline.station[layout.timeline.n_run_in :]
+    phases = [2.0 * np.pi * part.n[:, None] * station[:, part.columns.start] for part in sets]
     return Harmonics(
         time=layout.time,
-        phase=2.0 * np.pi * n[:, None] * station,
-        power=waves.power[part],
-        coarse_power=waves.coarse_power[part],
+        phase=np.concatenate(phases),
+        power=np.concatenate([part.power for part in sets]),
+        coarse_power=np.concatenate([part.coarse_power for part in sets]),
         displacement=_complex(record.displacement),
         velocity=_complex(record.velocity),
         acceleration=_complex(record.acceleration),

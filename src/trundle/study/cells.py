@@ -28,7 +28,7 @@ __all__ = ["Cell", "CellKey", "History", "run_cells"]
 
 Progress = Callable[[float], None]
 
-_WAVES = 240  # shared among the roads of a case: 480 runs' worth
+_WAVES = 200  # shared among the roads of a case: 400 runs' worth
 _SAMPLED_SHARE = 0.65  # of a case's time, against exact statistics
 
 

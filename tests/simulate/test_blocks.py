@@ -1,0 +1,132 @@
+"""The block solver: its answers do not depend on how time and runs are cut."""
+
+import numpy as np
+import pytest
+
+from models import small_floor
+from trundle.road import Profile, RoadClass, RoughnessBand
+from trundle.route import DriveIn, Ramp, Route
+from trundle.simulate import (
+    Coupled,
+    Crossing,
+    Decoupled,
+    Modal,
+    ModalRatio,
+    Newmark,
+    Rayleigh,
+    batches,
+    ensemble,
+    lay_out,
+    mean_response,
+)
+from trundle.simulate import _block_march as march
+from trundle.vehicle import container_truck_40ft, quarter_car
+
+POINTS = {"a": (3.0, 3.0), "b": (7.3, 1.9)}
+
+
+def way(vehicle=None, *, y=3.0, speed=7.0, name="way", entry=None, level="geometric_mean"):
+    return Crossing(
+        vehicle=vehicle or container_truck_40ft(),
+        route=Route.straight((0.0, y), (12.0, y), speed=speed, name=name),
+        road=RoadClass("B", level=level), band=RoughnessBand(n_min=0.05, n_max=2.0),
+        entry=entry or DriveIn(length=2.0),
+    )  # fmt: skip
+
+
+def difference(a, b):
+    return np.abs(a - b).max() / np.abs(b).max()
+
+
+@pytest.mark.parametrize("kind", [Coupled, Decoupled])
+@pytest.mark.parametrize("length", [1, 5, 64])
+def test_any_length_of_block_gives_the_same(monkeypatch, kind, length):
+    """One step at a time is the plain recursion; blocks only gather it: to round-off."""
+    floor = small_floor(mesh_size=2.0)
+    method = kind(integration=Modal(f_max=60.0, dt=0.005), damping=ModalRatio(ratio=0.02))
+    settings = {"method": method, "points": POINTS, "n_runs": 3, "seed": 4, "duration": 3.1}
+    reference = ensemble(floor, way(), **settings)
+    monkeypatch.setattr(march, "_BLOCK", length)
+    other = ensemble(floor, way(), **settings)
+    for name in ("displacement", "velocity", "acceleration", "contact_forces"):
+        assert difference(getattr(other, name), getattr(reference, name)) < 1e-9
+
+
+def test_a_coupled_block_is_the_floor_under_its_own_forces():
+    """Coupled response = the response of the decoupled floor to the coupled contact forces.
+
+    The floor's part of a block is formed twice, in the contact solution and at the points; here
+    the forces are put onto the same floor by Newmark's method in all dofs, at a tenth of the step.
+    """
+    floor = small_floor(mesh_size=2.0)
+    car = quarter_car(
+        body_mass=4000.0, axle_mass=400.0, stiffness=4e5, damping=8e3, tyre_stiffness=2e6,
+        tyre_damping=1e3,
+    )  # fmt: skip
+    crossing = way(car)
+    damping = Rayleigh(alpha=0.5, beta=0.0005)
+    settings = {"points": POINTS, "n_runs": 1, "seed": 2, "duration": 2.5}
+    modal = ensemble(
+        floor, crossing, method=Coupled(integration=Modal(f_max=300.0, dt=5e-4), damping=damping),
+        **settings,
+    )  # fmt: skip
+    direct = ensemble(
+        floor, crossing, method=Coupled(integration=Newmark(dt=5e-4), damping=damping), **settings
+    )
+    assert difference(modal.contact_forces, direct.contact_forces) < 2e-3
+    assert difference(modal.velocity, direct.velocity) < 5e-3
+
+
+def test_batches_are_parts_of_the_ensemble():
+    """A run's road depends on its number alone: cut as you like, bits stay within a batch size."""
+    method = Coupled(integration=Modal(f_max=60.0, dt=0.01))
+    layout = lay_out(small_floor(mesh_size=2.0), way(), method=method, points=POINTS, duration=2.0)
+    whole = next(batches(layout, runs=range(7), seed=3, batch=7))
+    parts = list(batches(layout, runs=range(7), seed=3, batch=3))
+    assert [part.n_runs for part in parts] == [3, 3, 1]
+    joined = np.concatenate([part.acceleration for part in parts])
+    assert difference(joined, whole.acceleration) < 1e-10
+    later = next(batches(layout, runs=range(4, 7), seed=3))
+    assert difference(later.acceleration, whole.acceleration[4:]) < 1e-10
+
+
+def test_a_rougher_road_is_the_same_run_scaled_about_the_smooth_one():
+    """Linearity: the upper limit's road is sqrt(2) times the mean's, wave by wave."""
+    floor = small_floor(mesh_size=2.0)
+    method = Coupled(integration=Modal(f_max=60.0, dt=0.01))
+    settings = {"method": method, "points": POINTS, "duration": 2.5}
+    layout = lay_out(floor, way(), **settings)
+    runs = next(batches(layout, runs=range(3), seed=1))
+    scaled = runs.rougher(mean_response(layout), np.sqrt(2.0))
+    direct = ensemble(floor, way(level="upper"), **settings, n_runs=3, seed=1)
+    for name in ("velocity", "acceleration", "contact_forces"):
+        assert difference(getattr(scaled, name), getattr(direct, name)) < 1e-9
+
+
+def test_vehicles_that_come_and_go_leave_blocks_without_wheels():
+    """Two trucks, one long after the other: superposition of each alone, decoupled."""
+    floor = small_floor(mesh_size=2.0)
+    early, late = way(name="early", speed=12.0), way(name="late", y=1.0, speed=9.0)
+    late = Crossing(
+        vehicle=late.vehicle, route=late.route, road=late.road, band=late.band, entry=late.entry,
+        depart=6.0,
+    )  # fmt: skip
+    method = Decoupled(integration=Modal(f_max=60.0, dt=0.01))
+    settings = {"method": method, "points": POINTS, "n_runs": 2, "seed": 5, "duration": 10.0}
+    both = ensemble(floor, [early, late], **settings).velocity
+    alone = sum(ensemble(floor, one, **settings).velocity for one in (early, late))
+    assert difference(both, alone) < 1e-9
+
+
+def test_smooth_road_and_ramp_make_no_variance():
+    """Without roughness every run is the mean response."""
+    floor = small_floor(mesh_size=2.0)
+    crossing = Crossing(
+        vehicle=container_truck_40ft(), route=Route.straight((0.0, 3.0), (12.0, 3.0), speed=7.0),
+        road=Profile.smooth(), entry=Ramp(length=1.0),
+    )  # fmt: skip
+    method = Coupled(integration=Modal(f_max=60.0, dt=0.01))
+    layout = lay_out(floor, crossing, method=method, points=POINTS, duration=2.0)
+    runs = next(batches(layout, runs=range(2), seed=1))
+    mean = mean_response(layout)
+    np.testing.assert_allclose(runs.velocity[1], mean.velocity, rtol=1e-12, atol=1e-15)

@@ -4,6 +4,7 @@ import os
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
+os.environ["TRUNDLE_CACHE"] = ""  # tests find modes, and leave none behind
 
 import pytest  # noqa: E402  (threads are set before numpy loads)
 from jaxtyping import install_import_hook  # noqa: E402

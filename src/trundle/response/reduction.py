@@ -68,14 +68,10 @@ def reduce_runs(runs: Runs, *, averaging: Averaging = "max_1s") -> Reduced:
 def join(parts: Sequence[Reduced]) -> Reduced:
     """Put the runs of several parts behind each other."""
     first = parts[0].spectra
-
-    def stack(name: str) -> Array:
-        return np.concatenate([getattr(part, name) for part in parts])
-
     return Reduced(
-        peak_acceleration=stack("peak_acceleration"),
-        peak_time=stack("peak_time"),
-        rms_velocity=stack("rms_velocity"),
+        peak_acceleration=_stack(parts, "peak_acceleration"),
+        peak_time=_stack(parts, "peak_time"),
+        rms_velocity=_stack(parts, "rms_velocity"),
         spectra=BandSpectra(
             mid_band=first.mid_band,
             values=np.concatenate([part.spectra.values for part in parts]),
@@ -83,9 +79,13 @@ def join(parts: Sequence[Reduced]) -> Reduced:
             averaging=first.averaging,
             point_names=first.point_names,
         ),
-        peak_contact_force=stack("peak_contact_force"),
-        tension=stack("tension"),
+        peak_contact_force=_stack(parts, "peak_contact_force"),
+        tension=_stack(parts, "tension"),
     )
+
+
+def _stack(parts: Sequence[Reduced], name: str) -> Array:
+    return np.concatenate([getattr(part, name) for part in parts])
 
 
 def percentile_interval(

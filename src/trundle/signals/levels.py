@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -79,12 +80,17 @@ def band_levels(
     if averaging != "event":
         samples = _faded_out(samples, round(_WINDOW * sampling_frequency))
 
-    def level(f: float) -> Array:
-        filtered = signal.sosfilt(band_filter(f, sampling_frequency), samples, axis=-1)
-        return averaged_rms(filtered, sampling_frequency, averaging)
-
+    level = partial(_band_level, samples, sampling_frequency, averaging)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return np.stack(list(pool.map(level, mid_band)))
+
+
+def _band_level(
+    samples: Array, sampling_frequency: float, averaging: Averaging, mid_band: float
+) -> Array:
+    sos = band_filter(mid_band, sampling_frequency)
+    filtered = signal.sosfilt(sos, samples, axis=-1)
+    return averaged_rms(filtered, sampling_frequency, averaging)
 
 
 def _faded_out(samples: Array, n_steps: int) -> Array:

@@ -95,7 +95,7 @@ class Layout:
 
     @property
     def contact_names(self) -> tuple[str, ...]:
-        """Names of all contacts, with their route's where several drive."""
+        """All contacts by name, with their route's where several drive."""
         if len(self.crossings) == 1:
             return self.crossings[0].vehicle.contact_names
         return tuple(

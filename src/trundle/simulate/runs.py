@@ -127,16 +127,12 @@ class Runs:
         """
         if factor == 1.0:
             return self
-
-        def about(still: Array, values: Array) -> Array:
-            return still + factor * (values - still)
-
         return replace(
             self,
-            displacement=about(mean.displacement, self.displacement),
-            velocity=about(mean.velocity, self.velocity),
-            acceleration=about(mean.acceleration, self.acceleration),
-            contact_forces=about(mean.contact_forces, self.contact_forces),
+            displacement=_about(mean.displacement, self.displacement, factor),
+            velocity=_about(mean.velocity, self.velocity, factor),
+            acceleration=_about(mean.acceleration, self.acceleration, factor),
+            contact_forces=_about(mean.contact_forces, self.contact_forces, factor),
         )
 
     def __str__(self) -> str:
@@ -150,3 +146,7 @@ class Runs:
             rms = np.median(self.record_rms_velocity()[:, i])
             lines.append(f"{name}: median peak {peak:.3g} m/s2, record RMS {rms:.3g} m/s")
         return "\n".join([*lines, *(f"warning: {w}" for w in self.warnings)])
+
+
+def _about(still: Array, values: Array, factor: float) -> Array:
+    return still + factor * (values - still)

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from trundle.criteria import Verdict, assess_spectra
-from trundle.dynamics import Modal, Modes, natural_modes
+from trundle.dynamics import Modal, Modes
 from trundle.errors import FitnessWarning
 from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
 from trundle.study.cells import Cell, CellKey, run_cells
+from trundle.study.mode_cache import modes_of
 from trundle.study.model import Case, MethodPlan, Study
 
 __all__ = ["StudyResult", "run_study"]
@@ -136,11 +137,8 @@ def _all_modes(study: Study, tell: Report) -> Modes | None:
         return None
     label = f"modes of the floor below {f_max:g} Hz"
     tell(label, 0.0)
-    return natural_modes(
-        study.floor.mass,
-        study.floor.stiffness,
-        f_max=f_max,
-        progress=lambda share: tell(label, _MODES_SHARE * share),
+    return modes_of(
+        study.floor, f_max=f_max, progress=lambda share: tell(label, _MODES_SHARE * share)
     )
 
 

@@ -1,0 +1,63 @@
+"""Kept modes are the same modes, and a spoiled cache is never believed."""
+
+import numpy as np
+import pytest
+
+from models import small_floor
+from trundle.study import mode_cache
+from trundle.study.mode_cache import modes_of
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("TRUNDLE_CACHE", str(tmp_path / "modes"))
+    return tmp_path / "modes"
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    calls = []
+    original = mode_cache.natural_modes
+
+    def counting(*args, **kwargs):
+        calls.append(kwargs["f_max"])
+        return original(*args, **kwargs)
+
+    monkeypatch.setattr(mode_cache, "natural_modes", counting)
+    return calls
+
+
+def test_found_once_and_bit_identical(folder, counted):
+    floor = small_floor(mesh_size=2.0)
+    first, again = modes_of(floor, f_max=40.0), modes_of(floor, f_max=30.0)
+    assert counted == [40.0]
+    np.testing.assert_array_equal(first.shapes, again.shapes)
+    assert again.f_max == 40.0
+    modes_of(floor, f_max=60.0)
+    modes_of(small_floor(mesh_size=1.5), f_max=20.0)
+    assert counted == [40.0, 60.0, 20.0]
+    assert len(list(folder.iterdir())) == 2
+
+
+@pytest.mark.parametrize("spoil", ["cut", "empty", "foreign"])
+def test_a_spoiled_file_is_found_anew(folder, counted, spoil):
+    floor = small_floor(mesh_size=2.0)
+    modes_of(floor, f_max=20.0)
+    (file,) = folder.iterdir()
+    data = file.read_bytes()
+    if spoil == "foreign":
+        np.savez(file, omega=np.ones(2), shapes=np.ones((3, 2)), residuals=np.ones(2), f_max=99.0)
+    else:
+        file.write_bytes(data[: len(data) // 2] if spoil == "cut" else b"")
+    assert modes_of(floor, f_max=20.0).n_modes > 2
+    assert counted == [20.0, 20.0]
+
+
+def test_switched_off_or_not_writable_it_still_works(tmp_path, monkeypatch, counted):
+    floor = small_floor(mesh_size=2.0)
+    monkeypatch.setenv("TRUNDLE_CACHE", "")
+    modes_of(floor, f_max=20.0)
+    (tmp_path / "file").write_text("in the way")
+    monkeypatch.setenv("TRUNDLE_CACHE", str(tmp_path / "file" / "modes"))
+    modes_of(floor, f_max=20.0)
+    assert counted == [20.0, 20.0]

@@ -90,7 +90,7 @@ def _band_level(
 ) -> Array:
     sos = band_filter(mid_band, sampling_frequency)
     filtered = signal.sosfilt(sos, samples, axis=-1)
-    return averaged_rms(filtered, sampling_frequency, averaging)
+    return np.asarray(averaged_rms(filtered, sampling_frequency, averaging))
 
 
 def _faded_out(samples: Array, n_steps: int) -> Array:

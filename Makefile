@@ -42,10 +42,10 @@ fast: .venv/.ready-dev
 
 ifdef ONLY
 validate: .venv/.ready-dev
-	$(BIN)/python -m pytest -n 2 -k "$(ONLY)" --record build/validation_only.json tests/validation
+	$(BIN)/python -m pytest -n 2 -k "$(ONLY)" --record=build/validation_only.json tests/validation
 else
 validate: .venv/.ready-dev
-	$(BIN)/python -m pytest -n 2 --record build/validation.json tests/validation
+	$(BIN)/python -m pytest -n 2 --record=build/validation.json tests/validation
 	$(BIN)/python scripts/check_faults.py --json build/faults.json
 	$(BIN)/python scripts/validation_page.py build/validation.json build/faults.json
 endif
@@ -55,6 +55,7 @@ faults: .venv/.ready-dev
 
 bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/direct_step.py
+	$(BIN)/python benchmarks/ensemble_kernel.py
 
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs

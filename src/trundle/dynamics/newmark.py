@@ -11,6 +11,7 @@ from scipy import linalg, sparse
 
 from trundle._checks import positive, set_frozen, within
 from trundle._typing import Array, Matrix
+from trundle.dynamics.damping import Rayleigh
 from trundle.dynamics.sparse_solver import factorise
 from trundle.dynamics.stepping import Motion, State
 from trundle.dynamics.system import LinearSystem
@@ -79,13 +80,22 @@ class NewmarkPropagator:
     ``(K + a1 C + a0 M) u = p + M a0 u^ + C (a1 u^ - v^)``, with ``a0 = 1 / (beta dt^2)`` and
     ``a1 = gamma / (beta dt)``; then ``u' = v^ + a1 (u - u^)`` and ``u'' = a0 (u - u^)``.
 
+    Where ``C = alpha M + b K``, K is what the effective matrix A leaves after its mass part, so
+    ``C w = alpha M w + b' (A w - (a0 + a1 alpha) M w)`` with ``b' = b / (1 + a1 b)``; the part
+    ``b' A w`` needs no solution, and a step no product with K: one with M is left.
+
     References
     ----------
     N. M. Newmark, J. Eng. Mech. Div. ASCE 85 (1959) 67-94.
     """
 
     def __init__(
-        self, system: LinearSystem, method: Newmark, *, backend: str | None = None
+        self,
+        system: LinearSystem,
+        method: Newmark,
+        *,
+        rayleigh: Rayleigh | None = None,
+        backend: str | None = None,
     ) -> None:
         self.dt = method.dt
         self.method = method
@@ -94,6 +104,10 @@ class NewmarkPropagator:
         self.a1 = method.gamma / (method.beta * method.dt)
         effective = system.stiffness + self.a1 * system.damping + self.a0 * system.mass
         self.solver = _factor(effective, backend)
+        self._rayleigh = rayleigh
+        alpha, b = (0.0, 0.0) if rayleigh is None else (rayleigh.alpha, rayleigh.beta)
+        self._past_solution = b / (1.0 + self.a1 * b)
+        self._on_mass = alpha - self._past_solution * (self.a0 + self.a1 * alpha)
 
     def start(self, displacement: Float[Array, "dofs runs"]) -> State:
         """Return a state at rest, in equilibrium at the given displacement."""
@@ -103,11 +117,16 @@ class NewmarkPropagator:
     def predict(self, state: State, force: Float[Array, "dofs runs"] | None = None) -> Motion:
         """Return the motion at the step's end under a known force there (none: zero)."""
         u_hat, v_hat = self._predictors(state)
-        system = self.system
-        load = system.mass @ (self.a0 * u_hat) + system.damping @ (self.a1 * u_hat - v_hat)
+        system, w = self.system, self.a1 * u_hat - v_hat
+        if self._rayleigh is None:
+            load = system.mass @ (self.a0 * u_hat) + system.damping @ w
+        else:
+            load = system.mass @ (self.a0 * u_hat + self._on_mass * w)
         if force is not None:
             load = load + force
         u = self.solver.solve(load)
+        if self._rayleigh is not None:
+            u = u + self._past_solution * w
         return Motion(displacement=u, velocity=v_hat + self.a1 * (u - u_hat))
 
     def respond(self, force: Float[Array, "dofs columns"]) -> Motion:

@@ -15,6 +15,7 @@ from trundle.dynamics import (
     ModalRecursion,
     Modes,
     NewmarkPropagator,
+    Rayleigh,
     natural_modes,
 )
 from trundle.errors import InputError
@@ -113,7 +114,9 @@ def prepare(
         floor=floor,
         integration=integration,
         damping=damping,
-        propagator=NewmarkPropagator(system, integration),
+        propagator=NewmarkPropagator(
+            system, integration, rayleigh=damping if isinstance(damping, Rayleigh) else None
+        ),
         modes=None,
         flexibility=flexibility,
     )

@@ -44,6 +44,9 @@ rests on stands in the docstring of the test that the row names.
 def main() -> int:
     """Write the page and its figures; say where they are."""
     record = json.loads(Path(sys.argv[1]).read_text("utf-8"))
+    for kept in (record["rows"], record["curves"]):
+        kept.sort(key=lambda item: item["test"])  # tests end in any order
+    record["notes"].sort(key=lambda note: note["text"])
     faults = json.loads(Path(sys.argv[2]).read_text("utf-8")) if len(sys.argv) > 2 else []
     FIGURES.mkdir(parents=True, exist_ok=True)
     parts = [INTRODUCTION, summary(record, faults), *not_met(record["rows"])]
@@ -155,7 +158,7 @@ def shown_limit(row: dict) -> str:
 
 def figures(curves: list[dict]) -> list[str]:
     """Draw one figure for each kind of convergence, and list the orders."""
-    lines = ["## Convergence\n"]
+    lines = ["## Orders of convergence\n"]
     groups = defaultdict(list)
     for curve in sorted(curves, key=lambda c: c["label"]):
         groups[curve["figure"]].append(curve)

@@ -111,3 +111,10 @@ def test_bad_curves_are_refused(f, limits):
             name="x", title="x", quantity="band_rms_velocity", frequencies=np.array(f),
             limits=np.array(limits), axis="vertical", averaging="max_1s", source="s", confidence="c",
         )  # fmt: skip
+
+
+def test_a_quiet_peak_does_not_pass_beyond_what_was_computed():
+    """The microscope's limit is for all frequencies: modes to 20 Hz cannot say that it is met."""
+    runs = sine_runs(5.0, 1e-9, f_max=20.0)
+    verdict = assess(runs, find_criterion("electron-microscope-vertical"))[0]
+    assert verdict.status == "not assessed"

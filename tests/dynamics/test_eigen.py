@@ -91,3 +91,17 @@ def test_a_singular_matrix_is_refused(backend):
 def test_an_unknown_backend_is_refused():
     with pytest.raises(InputError, match="sparse backend must be one of"):
         factorise(sparse.csc_array(np.eye(2)), backend="magic")
+
+
+def test_a_missing_mode_is_noticed(monkeypatch):
+    """If inertia counts one mode more than are found, nothing is returned."""
+    from trundle.dynamics import eigen
+    from trundle.errors import ConvergenceError
+
+    floor = small_floor(mesh_size=0.75)
+    counted = eigen.count_modes_below
+    monkeypatch.setattr(
+        eigen, "count_modes_below", lambda *args, **kwargs: counted(*args, **kwargs) + 1
+    )
+    with pytest.raises(ConvergenceError):
+        natural_modes(floor.mass, floor.stiffness, f_max=20.0)

@@ -13,6 +13,7 @@ from trundle.road import (
     RoadClass,
     RoughnessBand,
     class_limits,
+    fit_roughness,
     synthesise,
     temporal_psd,
     temporal_psd_two_sided,
@@ -243,3 +244,19 @@ def test_measured_samples_come_back():
 def test_bad_roads_are_refused(make, match):
     with pytest.raises(InputError, match=match):
         make()
+
+
+@pytest.mark.parametrize("waviness", [1.0, 1.5, 2.5, 3.0])
+def test_other_wavinesses_hold_their_power_and_are_found_again(waviness):
+    """Quadrature of Gd over the band is the variance; a fit gives back the exponent asked for."""
+    road = RoadClass("B", waviness=waviness)
+    power, _ = integrate.quad(road.displacement_psd, 0.02, 2.0)
+    assert road.variance(0.02, 2.0) == pytest.approx(power, rel=1e-8)
+    band = RoughnessBand(n_min=0.005, n_max=2.83)
+    fits = [
+        fit_roughness(
+            synthesise(road, length=800.0, rng=np.random.default_rng(seed), band=band)
+        ).waviness
+        for seed in range(20)
+    ]
+    assert np.mean(fits) == pytest.approx(waviness, abs=0.1)

@@ -147,3 +147,14 @@ def test_parseval_of_the_psd():
 def test_a_band_too_high_is_refused():
     with pytest.raises(InputError, match="80 Hz band needs a sampling frequency"):
         band_filter(10**1.9, 100.0)
+
+
+def test_filters_ring_on_after_the_record():
+    """A burst that ends 0.4 s before its record has the level of the record padded with rest."""
+    fs = 200.0
+    t = np.arange(0, 5, 1 / fs)
+    inside = (t > 4.1) & (t < 4.6)
+    burst = np.where(inside, np.sin(np.pi * (t - 4.1) / 0.5) ** 2 * np.sin(2 * np.pi * 4 * t), 0)
+    padded = np.concatenate([burst, np.zeros(1000)])
+    cut, whole = (band_levels(x, fs, np.array([10**0.6]))[0] for x in (burst, padded))
+    assert cut == pytest.approx(whole, rel=0.05)

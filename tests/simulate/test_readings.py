@@ -169,3 +169,9 @@ def test_a_computation_reaches_to_its_modes_or_its_time_step(f_max, dt, reach):
 
 def test_thirty_six_kilometres_an_hour():
     assert pytest.approx(10.0) == 36.0 * KMH
+
+
+def test_the_run_in_lets_the_slowest_motion_decay_to_five_per_cent():
+    crossing = dataclasses.replace(way(), run_in=None)
+    decay = np.exp(-crossing.vehicle.decay_rates().min() * crossing.run_in_time)
+    assert decay == pytest.approx(0.05, rel=0.01)

@@ -376,3 +376,14 @@ def test_a_tuned_mass_on_a_spring_is_part_of_the_floor():
 def test_bad_shells_are_refused(corners, match):
     with pytest.raises(InputError, match=match):
         shell_stiffness(np.array([corners], dtype=float), SLAB)
+
+
+def test_the_mass_of_a_shell_is_consistent():
+    """Bilinear shapes on a rectangle: 4, 2, 1, 2 parts of 36 between its corners."""
+    corners = np.array([[[0.0, 0, 0], [2.0, 0, 0], [2.0, 1.0, 0], [0.0, 1.0, 0]]])
+    block = shell_mass(corners, SLAB)[0]
+    total = SLAB.mass_per_area * 2.0
+    for dof in range(3):
+        np.testing.assert_allclose(
+            block[dof, dof::6], total * np.array([4.0, 2.0, 1.0, 2.0]) / 36.0, rtol=1e-9
+        )

@@ -138,3 +138,24 @@ def test_bad_plans_are_refused(changes, match):
 def test_a_bad_mesh_size_is_refused():
     with pytest.raises(InputError, match="mesh_size must be greater than 0"):
         build_floor(small_plan(), mesh_size=-1.0)
+
+
+def test_beams_hang_below_the_slab_and_columns_stand_as_they_are_turned():
+    """Offsets by hand; a column's depth lies along x, so it is stiffer in x: 3 E b d^3 / 12 / L^3."""
+    from scipy.sparse.linalg import spsolve
+
+    from trundle.structure import Floor, Rectangle
+
+    floor = small_floor(mesh_size=3.0, column=Rectangle(width=0.3, depth=0.8), storey_above=0.0)
+    (beam,) = {group.offset[2] for group in floor.beams if group.name.startswith("beam")}
+    assert beam == pytest.approx(-(0.2 + 0.6) / 2)
+    columns = next(group for group in floor.beams if group.name == "column")
+    alone = Floor(nodes=floor.nodes, fixed=floor.fixed, beams=(columns,))
+    head = int(columns.elements[0, 0])
+    for dof, inertia in ((0, 0.3 * 0.8**3 / 12), (1, 0.8 * 0.3**3 / 12)):
+        load = np.zeros(alone.n_dofs)
+        load[alone.dof_index[head, dof]] = 1.0
+        sway = spsolve(alone.stiffness, load)[alone.dof_index[head, dof]]
+        shear = 4.0 / (columns.section.material.shear_modulus * 5 / 6 * 0.24)
+        elastic = columns.section.material.elastic_modulus
+        assert sway == pytest.approx(4.0**3 / (3 * elastic * inertia) + shear, rel=1e-6)

@@ -3,10 +3,12 @@
 import numpy as np
 from test_bad_input import GOOD
 
-from trundle.simulate import ensemble
+from trundle.report import summary_rows
+from trundle.simulate import Coupled, Decoupled, ensemble
 from trundle.study import load_study
 from trundle.study.cells import CellKey
 from trundle.study.run import run_study
+from trundle.units import GAL
 
 
 def test_every_class_has_the_response_to_its_own_road(tmp_path):
@@ -27,3 +29,23 @@ def test_every_class_has_the_response_to_its_own_road(tmp_path):
             cell.peak_contact_force, alone.contact_forces.max(axis=1), rtol=1e-9
         )
         np.testing.assert_allclose(cell.history.velocity, alone.velocity[0], rtol=1e-6, atol=1e-12)
+
+
+def test_a_study_asks_for_what_it_says(tmp_path):
+    """Method, level and percentile of the file are those of the study and of its verdicts."""
+    path = tmp_path / "study.toml"
+    text = GOOD.replace('class = "B"', 'class = "B"\nlevel = "upper"', 1)
+    path.write_text(text.replace('["VC-A"]', '["VC-A"]\npercentile = 80'))
+    study = load_study(path)
+    assert isinstance(study.methods[0].interaction, Coupled)
+    assert study.roads["B upper"].level == "upper"
+    other = tmp_path / "other.toml"
+    other.write_text(text.replace('interaction = "coupled"', 'interaction = "decoupled"'))
+    assert isinstance(load_study(other).methods[0].interaction, Decoupled)
+    result = run_study(study)
+    for key, verdicts in result.verdicts.items():
+        for verdict in verdicts:
+            assert verdict.percentile == 80.0
+        for row in summary_rows(result):
+            peaks = result.cells[key].peak_acceleration[:, 0] / GAL
+            np.testing.assert_allclose(row.peak, np.percentile(peaks, [5, 50, 95]), rtol=1e-12)

@@ -19,8 +19,11 @@ import tempfile
 import time
 import tomllib
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from queue import Queue
 
 ROOT = Path(__file__).resolve().parent.parent
 FAULTS = Path(__file__).with_name("faults.toml")
@@ -85,6 +88,7 @@ class Copy:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
+        folder.mkdir()
         source = folder / "src"
         # Bytecode is found by a file's size and time in whole seconds: a fault of the same
         # length could run the code of the last one.
@@ -196,17 +200,30 @@ def check_sound(copy: Copy, faults: tuple[Fault, ...]) -> None:
 
 
 def try_all(faults: tuple[Fault, ...]) -> list[Outcome]:
-    """Try every fault on one copy, a line of progress for each."""
+    """Try every fault, one to a copy at a time, a line of progress for each."""
     outcomes = []
     with tempfile.TemporaryDirectory(prefix="trundle-faults-") as folder:
-        copy = Copy(Path(folder).resolve())
-        check_list(faults, copy.folder)
-        check_sound(copy, faults)
-        for number, fault in enumerate(faults, start=1):
-            outcome = copy.try_fault(fault)
-            outcomes.append(outcome)
-            print(f"{number:3}/{len(faults)} {line_of(outcome)}", flush=True)
+        copies = [Copy(Path(folder).resolve() / str(i)) for i in range(os.cpu_count() or 1)]
+        check_list(faults, copies[0].folder)
+        check_sound(copies[0], faults)
+        idle: Queue[Copy] = Queue()
+        for copy in copies:
+            idle.put(copy)
+        with ThreadPoolExecutor(len(copies)) as pool:
+            trials = pool.map(partial(try_on_idle, idle), faults)
+            for number, outcome in enumerate(trials, start=1):
+                outcomes.append(outcome)
+                print(f"{number:3}/{len(faults)} {line_of(outcome)}", flush=True)
     return outcomes
+
+
+def try_on_idle(idle: Queue[Copy], fault: Fault) -> Outcome:
+    """Try a fault on a copy that no other fault is in."""
+    copy = idle.get()
+    try:
+        return copy.try_fault(fault)
+    finally:
+        idle.put(copy)
 
 
 def line_of(outcome: Outcome) -> str:

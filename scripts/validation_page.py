@@ -191,7 +191,7 @@ def draw(group: list[dict], file: Path) -> None:
     axes.set_ylabel(group[0]["y_label"])
     ticks = sorted({value for curve in group for value in curve["x"]})
     if len(ticks) <= 8:
-        axes.set_xticks(ticks, [f"{value:.3g}" for value in ticks], minor=False)
+        axes.set_xticks(ticks, [f"{value:g}" for value in ticks], minor=False)
         axes.xaxis.set_minor_formatter(mpl.ticker.NullFormatter())
     axes.grid(True, which="both", linewidth=0.3)
     axes.legend(title="markers: computed; lines: expected order", fontsize=8, title_fontsize=8)

@@ -13,13 +13,11 @@ from trundle.structure import (
     BeamGroup,
     BeamSection,
     Floor,
-    FloorPlan,
     Material,
     PointMasses,
     ShellGroup,
     ShellSection,
     SpringGroup,
-    build_floor,
 )
 from trundle.structure.beam import beam_mass, beam_stiffness
 from trundle.structure.shell import shell_mass, shell_stiffness
@@ -197,96 +195,6 @@ def test_torsion_constant_of_rectangles():
     for ratio, k1 in ((1.0, 0.1406), (1.5, 0.196), (2.0, 0.229), (3.0, 0.263), (10.0, 0.312)):
         section = BeamSection.rectangle(0.3, 0.3 * ratio, CONCRETE)
         assert section.torsion_constant == pytest.approx(k1 * 0.3**3 * 0.3 * ratio, rel=0.005)
-
-
-def test_two_beams_with_an_offset_act_as_one_composite():
-    """Under an end moment: EI = sum E (I + A d^2) about the common neutral axis."""
-    flange = BeamSection.rectangle(1.5, 0.2, CONCRETE)
-    web = BeamSection.rectangle(0.4, 0.8, CONCRETE)
-    n, length, moment = 4, 3.0, 1e5
-    x = np.linspace(0.0, length, n + 1)
-    elements = np.column_stack([np.arange(n), np.arange(1, n + 1)])
-    fixed = np.zeros((n + 1, 6), dtype=bool)
-    fixed[0] = True
-    floor = Floor(
-        nodes=np.column_stack([x, 0 * x, 0 * x]),
-        fixed=fixed,
-        beams=(
-            BeamGroup(elements=elements, section=flange),
-            BeamGroup(elements=elements, section=web, offset=np.array([0.0, 0.0, -0.5])),
-        ),
-    )
-    force = np.zeros(floor.n_dofs)
-    force[floor.dof_index[-1, 4]] = moment
-    u = spsolve(floor.stiffness, force)
-    axis = -0.5 * web.area / (web.area + flange.area)
-    rigidity = 30e9 * (
-        flange.inertia_y + flange.area * axis**2 + web.inertia_y + web.area * (axis + 0.5) ** 2
-    )
-    assert u[floor.dof_index[-1, 4]] == pytest.approx(moment * length / rigidity, rel=1e-9)
-    assert u[floor.dof_index[-1, 2]] == pytest.approx(
-        -moment * length**2 / (2 * rigidity), rel=1e-9
-    )
-    # the neutral axis lies below the node, so the node moves along with the rotation: the side
-    # on which the web hangs is seen here alone
-    tip = floor.dof_index[-1]
-    assert u[tip[0]] == pytest.approx(-axis * u[tip[4]], rel=1e-9)
-
-
-def plate(thickness: float, edge: str, n: int, *, side: float = 1.0, nu: float = 0.3) -> Floor:
-    material = Material(elastic_modulus=210e9, poisson_ratio=nu, density=7850.0)
-    return build_floor(
-        FloorPlan(
-            x_lines=np.array([0.0, side]),
-            y_lines=np.array([0.0, side]),
-            x_extent=(0.0, side),
-            y_extent=(0.0, side),
-            slab=ShellSection(thickness=thickness, material=material),
-            material=material,
-            edges=dict.fromkeys(("x_min", "x_max", "y_min", "y_max"), edge),
-        ),
-        mesh_size=side / n,
-    )
-
-
-def central_deflection(floor: Floor, pressure: float) -> float:
-    ones = floor.rigid_vector(2)
-    load = pressure / floor.shells[0].section.mass_per_area * (floor.mass @ ones)
-    u = spsolve(floor.stiffness, load)
-    middle = np.argmin(np.abs(floor.nodes - floor.nodes.mean(axis=0)).sum(axis=1))
-    return float(u[floor.dof_index[middle, 2]])
-
-
-@pytest.mark.parametrize("thickness", [0.01, 0.001])
-@pytest.mark.parametrize(("edge", "coefficient"), [("pinned", 0.00406235), ("clamped", 0.00126532)])
-def test_thin_plates_do_not_lock(thickness, edge, coefficient):
-    """Timoshenko and Woinowsky-Krieger: w = coefficient q a^4 / D, also at t/L = 1/1000."""
-    pressure = 1.0
-    rigidity = 210e9 * thickness**3 / 12 / (1 - 0.09)
-    computed = central_deflection(plate(thickness, edge, 32), pressure) * rigidity / pressure
-    assert computed == pytest.approx(coefficient, rel=0.004)
-
-
-def test_plate_deflection_converges_at_second_order():
-    exact = 0.00406235 / (210e9 * 0.001**3 / 12 / 0.91)
-    errors = [
-        abs(central_deflection(plate(0.001, "pinned", n), 1.0) / exact - 1) for n in (8, 16, 32)
-    ]
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert orders == pytest.approx(2.0, abs=0.25)
-
-
-def test_plate_frequencies():
-    """Leissa (NASA SP-160): omega a^2 sqrt(rho t / D) of square plates, nu = 0.3."""
-    thickness = 0.005
-    scale = np.sqrt(210e9 * thickness**3 / 12 / 0.91 / (7850 * thickness)) / (2 * np.pi)
-    for edge, wanted in (
-        ("pinned", [19.7392, 49.3480, 49.3480, 78.9568, 98.6960]),
-        ("clamped", [35.992, 73.413, 73.413, 108.27, 131.64]),
-    ):
-        floor = plate(thickness, edge, 56)
-        f = natural_modes(floor.mass, floor.stiffness, f_max=1.1 * wanted[-1] * scale).frequencies
-        np.testing.assert_allclose(f[:5], np.array(wanted) * scale, rtol=0.005)
 
 
 def test_in_plane_bending_of_one_row_of_shells():

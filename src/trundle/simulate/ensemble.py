@@ -16,11 +16,12 @@ from trundle.simulate.prepared import PreparedFloor
 from trundle.simulate.runs import Runs
 from trundle.structure import Floor
 
-__all__ = ["batches", "contact_forces", "ensemble"]
+__all__ = ["LEAST_BATCH", "batches", "contact_forces", "ensemble"]
 
 Progress = Callable[[float], None]
 
 _BATCH_BYTES = 512e6  # histories and roads held at once
+LEAST_BATCH = 16  # runs held at once however long their histories are
 _MOST_RUNS = 1024  # in a batch; more would gain nothing
 
 
@@ -134,7 +135,7 @@ def batch_size(layout: Layout) -> int:
     n_all, n_contacts = layout.timeline.station.shape
     each_step = 3 * len(layout.point_names) + n_contacts
     values = 2 * n_all * n_contacts + len(layout.time) * each_step
-    return int(np.clip(_BATCH_BYTES / (8.0 * values), 16, _MOST_RUNS))
+    return int(np.clip(_BATCH_BYTES / (8.0 * values), LEAST_BATCH, _MOST_RUNS))
 
 
 def contact_forces(

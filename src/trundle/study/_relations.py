@@ -8,6 +8,7 @@ from trundle.criteria import find_criterion
 from trundle.dynamics import Modal
 from trundle.errors import InputError, Problem
 from trundle.road import RoughnessBand
+from trundle.simulate.ensemble import LEAST_BATCH
 from trundle.structure import FloorPlan
 from trundle.study.model import Drive, MethodPlan, road_label
 from trundle.study.read import StudyFile
@@ -216,9 +217,18 @@ def _sizes(
     if file.general is None:
         return
     contacts = sum(drive.vehicle.n_contacts for drive in drives.values())
-    # Per step: readings and road of every run, and the contact operator's rows.
-    per_run = 8 * (6 * max(1, len(file.items("point"))) + 4 * max(1, contacts))
-    per_step = per_run * file.general.runs + 1200 * max(1, contacts)
+    points = max(1, len(file.items("point")))
+    # Histories are held for a batch at a time; of every run a few numbers a point are kept.
+    per_step = 8 * LEAST_BATCH * (6 * points + 4 * max(1, contacts)) + 1200 * max(1, contacts)
+    cells = len(methods) * max(1, len(file.items("road"))) * (len(drives) + 1)
+    kept = 8 * cells * (24 * points + 2 * max(1, contacts))
+    if file.general.runs * kept > _MAX_HISTORY:
+        yield Problem(
+            place="runs",
+            value=str(file.general.runs),
+            rule="what is kept of every run would not fit in memory",
+            remedy=f"use at most {int(_MAX_HISTORY / kept)} runs, or fewer points",
+        )
     for method in methods.values():
         steps = file.general.duration / method.interaction.integration.dt
         if steps > _MAX_STEPS:
@@ -230,12 +240,12 @@ def _sizes(
                 remedy="shorten the duration, or lengthen dt",
             )
         elif steps * per_step > _MAX_HISTORY:
-            most = max(1, int((_MAX_HISTORY / steps - 1200 * contacts) / per_run))
             yield Problem(
-                place="runs",
-                value=str(file.general.runs),
-                rule=f"the histories of method {method.name!r} would not fit in memory",
-                remedy=f"use at most {most} runs, fewer points, or a shorter record",
+                place="duration",
+                value=f"{file.general.duration:g} s",
+                rule=f"the histories of method {method.name!r} would not fit in memory, even of "
+                f"{LEAST_BATCH} runs at a time",
+                remedy="use fewer points, a shorter record, or a longer dt",
             )
 
 

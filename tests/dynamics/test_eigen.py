@@ -5,7 +5,13 @@ import pytest
 from scipy import linalg, sparse
 
 from models import small_floor
-from trundle.dynamics import available_backends, count_modes_below, factorise, natural_modes
+from trundle.dynamics import (
+    available_backends,
+    count_modes_below,
+    factorise,
+    lanczos,
+    natural_modes,
+)
 from trundle.errors import InputError, UnrestrainedModeError
 
 
@@ -32,6 +38,35 @@ def test_block_lanczos_finds_what_dense_algebra_finds(floor, dense, backend):
     gram = modes.shapes.T @ (floor.mass @ modes.shapes)
     np.testing.assert_allclose(gram, np.eye(modes.n_modes), atol=1e-9)
     assert modes.residuals.max() < 1e-8
+
+
+@pytest.mark.parametrize("backend", available_backends())
+@pytest.mark.parametrize("modes_a_shift", [24, 60])
+def test_slices_of_a_spectrum_fit_together(floor, dense, backend, modes_a_shift, monkeypatch):
+    """Many shifts, from both ends at once: still LAPACK's modes, orthonormal across the cuts."""
+    monkeypatch.setattr(lanczos, "_SLICE", modes_a_shift)
+    f_max = 250.0
+    modes = natural_modes(floor.mass, floor.stiffness, f_max=f_max, backend=backend)
+    wanted = dense[0][dense[0] < f_max]
+    assert modes.n_modes == len(wanted) > 2 * modes_a_shift
+    np.testing.assert_allclose(modes.frequencies, wanted, rtol=1e-8)
+    gram = modes.shapes.T @ (floor.mass @ modes.shapes)
+    np.testing.assert_allclose(gram, np.eye(modes.n_modes), atol=1e-9)
+    assert modes.residuals.max() < 1e-8
+
+
+def test_few_masses_on_a_large_structure():
+    """A rank-4 mass: four modes, the same as of the static flexibility between the masses."""
+    n = 900
+    stiffness = sparse.diags_array(
+        [np.full(n - 1, -1.0), np.full(n, 2.0), np.full(n - 1, -1.0)], offsets=[-1, 0, 1]
+    ).tocsc()
+    places = np.array([100, 350, 351, 700])
+    mass = sparse.csc_array((np.full(4, 2.0), (places, places)), shape=(n, n))
+    flexibility = np.linalg.inv(stiffness.toarray())[np.ix_(places, places)]
+    expected = np.sort(1.0 / np.sqrt(2.0 * np.linalg.eigvalsh(flexibility))) / (2 * np.pi)
+    modes = natural_modes(mass, stiffness, f_max=10.0)
+    np.testing.assert_allclose(modes.frequencies, expected, rtol=1e-8)
 
 
 @pytest.mark.parametrize("backend", available_backends())

@@ -102,7 +102,7 @@ MISTAKES = [
     ("printed value of nothing", "[criteria]", '[[printed]]\ncase = "x"\nroad = "B"\nmethod = "coupled"\npeak_acceleration = "1 gal"\nrms_velocity = "1 um/s"\n[criteria]', ["printed[1].case", "'x'"]),
     ("no runs", "runs = 2", "runs = 0", ["runs", "0", "greater than or equal to 1"]),
     ("negative seed", "seed = 1", "seed = -1", ["seed", "-1"]),
-    ("runs beyond memory", "runs = 2", "runs = 90000000", ["runs", "not fit in memory", "at most"]),
+    ("runs beyond reason", "runs = 2", "runs = 90000000", ["runs", "90000000", "less than or equal to"]),
     ("endless record", '"4 s"', '"9 d"', ["duration", "steps"]),
     ("no title", 'title = "Small"', "", ["title", "required"]),
     ("empty title", 'title = "Small"', 'title = ""', ["title"]),

@@ -1,8 +1,6 @@
 """Find all natural modes below a frequency, and prove by inertia that none is missing.
 
-Large sparse systems use a block Lanczos iteration on ``(K + s M)^-1 M`` with full
-reorthogonalisation in the mass inner product: nearly all the work is solves with many
-right-hand sides and dense matrix products, which run near the machine's speed.
+Large sparse systems are taken slice by slice (`dynamics.lanczos`), small ones whole.
 """
 
 from __future__ import annotations
@@ -13,19 +11,19 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 from scipy import linalg, sparse
+from threadpoolctl import threadpool_limits
 
 from trundle._checks import positive
 from trundle._typing import Array, Matrix, SparseMatrix
+from trundle.dynamics.lanczos import EigenSlice, march
 from trundle.dynamics.sparse_solver import factorise
-from trundle.errors import ConvergenceError, UnrestrainedModeError
+from trundle.errors import UnrestrainedModeError
 
 __all__ = ["Modes", "count_modes_below", "natural_modes"]
 
-_BLOCK = 24
 _DENSE_LIMIT = 600
 _DENSE_FALLBACK = 6000
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any floor mode
-_USUAL_SUBSPACE = 2.3  # columns a mode takes to converge, for the progress bar
 _RIGID = 1e-4  # rad2/s2: an eigenvalue below this is a motion without strain
 
 
@@ -112,9 +110,9 @@ def natural_modes(
     positive("f_max", f_max)
     n_dofs = int(mass.shape[0])
     if n_dofs <= _DENSE_LIMIT or isinstance(mass, np.ndarray) or isinstance(stiffness, np.ndarray):
-        eigenvalues, shapes = _dense(mass, stiffness, f_max)
+        eigenvalues, shapes, residuals = _whole(mass, stiffness, f_max)
     else:
-        eigenvalues, shapes = _block_lanczos(mass, stiffness, f_max, backend, progress)
+        eigenvalues, shapes, residuals = _sparse(mass, stiffness, f_max, backend, progress)
     if not allow_rigid and len(eigenvalues) and eigenvalues[0] < _RIGID:
         raise UnrestrainedModeError(
             f"{np.count_nonzero(eigenvalues < _RIGID)} motions without strain: part of the "
@@ -122,8 +120,8 @@ def natural_modes(
         )
     return Modes(
         omega=np.sqrt(np.maximum(eigenvalues, 0.0)),
-        shapes=_fix_signs(shapes),
-        residuals=_residuals(mass, stiffness, eigenvalues, shapes),
+        shapes=shapes,
+        residuals=residuals,
         f_max=float(f_max),
     )
 
@@ -142,73 +140,46 @@ def _dense(mass: Matrix, stiffness: Matrix, f_max: float) -> tuple[Array, Array]
     return 1.0 / nu - _SHIFT, vectors / np.sqrt(nu)
 
 
-def _block_lanczos(
+def _sparse(
     mass: SparseMatrix,
     stiffness: SparseMatrix,
     f_max: float,
     backend: str | None,
     progress: Callable[[float], None] | None,
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, Array]:
+    """Return eigenvalues, shapes and residuals."""
     wanted = count_modes_below(mass, stiffness, f_max, backend=backend)
     n_dofs = mass.shape[0]
+    limit = (2.0 * np.pi * f_max) ** 2
     if wanted > n_dofs // 6 and n_dofs <= _DENSE_FALLBACK:
-        return _dense(mass, stiffness, f_max)  # most of a small spectrum: cheaper whole
-    factor = factorise(sparse.csc_array(stiffness + _SHIFT * mass), backend=backend)
-    capacity = min(n_dofs - 1, 4 * wanted + 12 * _BLOCK)
-    basis = np.zeros((n_dofs, capacity + _BLOCK), order="F")
-    projected = np.zeros((capacity + _BLOCK, capacity + _BLOCK))
-    start = np.random.default_rng(0).standard_normal((n_dofs, _BLOCK))
-    block, _, _ = _orthonormalise(mass, basis[:, :0], factor.solve(mass @ start))
-    basis[:, :_BLOCK] = block
-    size, next_look = _BLOCK, int(1.5 * wanted) + 3 * _BLOCK
-    while size + _BLOCK <= capacity + _BLOCK:
-        block = factor.solve(mass @ basis[:, size - _BLOCK : size])
-        block, overlap, last = _orthonormalise(mass, basis[:, :size], block)
-        projected[:size, size - _BLOCK : size] = overlap
-        projected[size - _BLOCK : size, :size] = overlap.T
-        if size >= next_look:
-            nu, ritz = linalg.eigh(projected[:size, :size])
-            nu, ritz = nu[::-1], ritz[:, ::-1]
-            errors = np.linalg.norm(last @ ritz[-_BLOCK:], axis=0)
-            good = errors[: wanted + 1] <= 1e-11 * np.abs(nu[: wanted + 1])
-            n_good = int(np.argmin(good)) if not good.all() else wanted + 1
-            if n_good >= wanted:
-                return _pick(nu, basis[:, :size], ritz, wanted, f_max)
-            next_look = int(1.12 * size)
-        basis[:, size : size + _BLOCK] = block
-        size += _BLOCK
+        return _whole(mass, stiffness, f_max)  # most of a small spectrum: cheaper whole
+    eigenvalues, residuals = np.zeros(wanted), np.zeros(wanted)
+    shapes = np.empty((n_dofs, wanted))
+
+    def keep(found: int, part: EigenSlice) -> None:
+        here = slice(found, found + len(part.eigenvalues))
+        eigenvalues[here] = part.eigenvalues
+        shapes[:, here] = part.shapes * _signs(part.shapes)
+        residuals[here] = _residuals(mass, stiffness, part.eigenvalues, part.shapes)
         if progress is not None:
-            progress(min(0.95, size / (_USUAL_SUBSPACE * wanted + 3 * _BLOCK)))
-    raise ConvergenceError(
-        f"{wanted} modes below {f_max:g} Hz wanted by inertia, but the iteration stopped "
-        f"short with a subspace of {size}",
-        residual=float("nan"),
-    )
+            progress(0.98 * np.count_nonzero(eigenvalues) / wanted)
+
+    try:
+        if wanted:
+            # Tall thin products are held up by memory; threads of one would only take turns.
+            with threadpool_limits(limits=1):
+                march(mass, stiffness, wanted, limit, backend=backend, keep=keep)
+    except linalg.LinAlgError:  # fewer masses than a block has columns
+        if n_dofs > _DENSE_FALLBACK:
+            raise
+        return _whole(mass, stiffness, f_max)
+    return eigenvalues, shapes, residuals
 
 
-def _orthonormalise(mass: SparseMatrix, basis: Array, block: Array) -> tuple[Array, Array, Array]:
-    """Make a block M-orthonormal and M-orthogonal to a basis; return it, overlap and R."""
-    overlap = np.zeros((basis.shape[1], block.shape[1]))
-    triangle = np.eye(block.shape[1])
-    for _ in range(2):
-        step = basis.T @ (mass @ block)
-        block = block - basis @ step
-        overlap += step @ triangle  # back on the scale of the original block
-        lower = linalg.cholesky(block.T @ (mass @ block), lower=True)
-        block = linalg.solve_triangular(lower, block.T, lower=True).T
-        triangle = lower.T @ triangle
-    return block, overlap, triangle
-
-
-def _pick(nu: Array, basis: Array, ritz: Array, wanted: int, f_max: float) -> tuple[Array, Array]:
-    eigenvalues = 1.0 / nu[:wanted] - _SHIFT
-    found = int(np.count_nonzero(eigenvalues < (2.0 * np.pi * f_max) ** 2))
-    if found != wanted:
-        raise ConvergenceError(
-            f"{found} modes found below {f_max:g} Hz, {wanted} counted by inertia",
-            residual=float("nan"),
-        )
-    return eigenvalues, basis @ ritz[:, :wanted]
+def _whole(mass: Matrix, stiffness: Matrix, f_max: float) -> tuple[Array, Array, Array]:
+    eigenvalues, shapes = _dense(mass, stiffness, f_max)
+    shapes = np.ascontiguousarray(shapes * _signs(shapes))
+    return eigenvalues, shapes, _residuals(mass, stiffness, eigenvalues, shapes)
 
 
 def _residuals(mass: Matrix, stiffness: Matrix, eigenvalues: Array, shapes: Array) -> Array:
@@ -217,7 +188,7 @@ def _residuals(mass: Matrix, stiffness: Matrix, eigenvalues: Array, shapes: Arra
     return error / np.maximum(np.linalg.norm(elastic, axis=0), np.finfo(float).tiny)
 
 
-def _fix_signs(shapes: Array) -> Array:
-    peak = np.abs(shapes).argmax(axis=0)
-    signs = np.sign(shapes[peak, np.arange(shapes.shape[1])])
-    return np.ascontiguousarray(shapes * signs)
+def _signs(shapes: Array) -> Array:
+    """Return factors that make each shape's largest part positive."""
+    peak = np.maximum(shapes.max(axis=0, initial=0.0), 0.0)
+    return np.where(peak >= -shapes.min(axis=0, initial=0.0), 1.0, -1.0)

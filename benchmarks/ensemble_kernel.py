@@ -15,6 +15,7 @@ from threadpoolctl import ThreadpoolController
 import trundle as tr
 from trundle.simulate import Coupled, Crossing, Modal, lay_out, prepare
 from trundle.simulate._schedule import roads_under_wheels
+from trundle.simulate.ensemble import batch_size
 from trundle.study.mode_cache import modes_of
 
 MODES, STEPS, RUNS, DT = 1000, 4000, 1000, 0.005
@@ -42,10 +43,10 @@ def main() -> None:
     before = dgemm_rate()
     kernel = 0.0
     start = time.perf_counter()
-    for first in range(0, RUNS, 500):
-        road = roads_under_wheels(
-            layout.crossings, layout.timeline, range(first, first + 500), seed=1
-        )
+    size = batch_size(layout)
+    for first in range(0, RUNS, size):
+        runs = range(first, min(first + size, RUNS))
+        road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed=1)
         begun = time.perf_counter()
         layout.over(road)
         kernel += time.perf_counter() - begun

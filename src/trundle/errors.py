@@ -105,7 +105,7 @@ class ConvergenceError(ComputationError):
         Largest relative residual reached.
     """
 
-    def __init__(self, message: str, *, residual: float) -> None:
+    def __init__(self, message: str, *, residual: float = float("nan")) -> None:
         self.residual = residual
         super().__init__(message)
 
@@ -121,7 +121,8 @@ class UnstableStepError(ComputationError):
         Time of that step [s].
     """
 
-    def __init__(self, message: str, *, step: int, time: float) -> None:
+    # Defaults let the error travel between processes, which set the attributes afterwards.
+    def __init__(self, message: str, *, step: int = 0, time: float = float("nan")) -> None:
         self.step = step
         self.time = time
         super().__init__(message)

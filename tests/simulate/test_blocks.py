@@ -20,6 +20,7 @@ from trundle.simulate import (
     mean_response,
 )
 from trundle.simulate import _block_march as march
+from trundle.simulate import _powers as powers
 from trundle.vehicle import container_truck_40ft, quarter_car
 
 POINTS = {"a": (3.0, 3.0), "b": (7.3, 1.9)}
@@ -46,10 +47,38 @@ def test_any_length_of_block_gives_the_same(monkeypatch, kind, length):
     method = kind(integration=Modal(f_max=60.0, dt=0.005), damping=ModalRatio(ratio=0.02))
     settings = {"method": method, "points": POINTS, "n_runs": 3, "seed": 4, "duration": 3.1}
     reference = ensemble(floor, way(), **settings)
-    monkeypatch.setattr(march, "_BLOCK", length)
+    monkeypatch.setattr(march, "block_length", lambda _: length)
     other = ensemble(floor, way(), **settings)
     for name in ("displacement", "velocity", "acceleration", "contact_forces"):
         assert difference(getattr(other, name), getattr(reference, name)) < 1e-9
+
+
+def test_both_ways_to_carry_a_force_through_a_block_agree(monkeypatch):
+    """A product over all pairs of steps, or lag by lag where damping forbids the way back."""
+    floor = small_floor(mesh_size=2.0)
+    for ratio, rtol in ((0.02, 1e-11), (0.5, 1e-9)):
+        method = Coupled(integration=Modal(f_max=60.0, dt=0.005), damping=ModalRatio(ratio=ratio))
+        settings = {"method": method, "points": POINTS, "n_runs": 2, "seed": 4, "duration": 3.0}
+        monkeypatch.setattr(powers, "_MOST_DECAY", 60.0)
+        at_once = ensemble(floor, way(), **settings)
+        monkeypatch.setattr(powers, "_MOST_DECAY", 0.0)
+        by_lags = ensemble(floor, way(), **settings)
+        for name in ("displacement", "velocity", "acceleration", "contact_forces"):
+            assert difference(getattr(at_once, name), getattr(by_lags, name)) < rtol
+
+
+def test_damping_that_kills_a_mode_within_a_step():
+    """Rayleigh damping far beyond critical: against Newmark's method in all dofs, finely stepped."""
+    floor = small_floor(mesh_size=2.0)
+    damping = Rayleigh(alpha=0.0, beta=0.5)
+    settings = {"points": POINTS, "n_runs": 1, "seed": 2, "duration": 2.5}
+    modal, direct = (
+        ensemble(floor, way(), method=Coupled(integration=step, damping=damping), **settings)
+        for step in (Modal(f_max=300.0, dt=0.005), Newmark(dt=0.001))
+    )
+    every = direct.displacement[:, ::5]
+    assert difference(modal.displacement, every) < 2e-2
+    assert difference(modal.contact_forces, direct.contact_forces[:, ::5]) < 2e-2
 
 
 def test_a_coupled_block_is_the_floor_under_its_own_forces():

@@ -71,7 +71,7 @@ def monolithic(floor, crossings, method, *, seed, duration):
     values, slopes = (rows.matrix(w) for w in (rows.value, rows.slope))
     u = np.zeros(nv + n)
     # the vehicle starts at rest in equilibrium on the road under its wheels
-    u[:nv] = np.linalg.solve(vehicle.system.stiffness, e.T @ (k @ road.elevation[0, :, 0]))
+    u[:nv] = np.linalg.solve(vehicle.system.stiffness, e.T @ (k @ road.start[:, 0]))
     v, a = np.zeros(nv + n), np.zeros(nv + n)
     a0, a1 = 4.0 / dt**2, 2.0 / dt
     out = []
@@ -95,7 +95,7 @@ def monolithic(floor, crossings, method, *, seed, duration):
             ],
             format="csc",
         )
-        push = k @ road.elevation[step, :, 0] + c @ road.rate[step, :, 0]
+        push = road.push[step, :, 0]
         load = np.concatenate([e.T @ push, -(ht @ (vehicle.static_forces + push))])
         u_hat = u + dt * v + dt**2 / 4 * a
         v_hat = v + dt / 2 * a

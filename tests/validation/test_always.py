@@ -26,7 +26,12 @@ from trundle.simulate import _march as march
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor
 from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._schedule import operator_rows, roads_under_wheels, timeline_of
+from trundle.simulate._schedule import (
+    drawn_roads,
+    operator_rows,
+    roads_under_wheels,
+    timeline_of,
+)
 from trundle.simulate.layout import _springs
 from trundle.vehicle import container_truck_40ft, quarter_car
 
@@ -105,7 +110,7 @@ def modal_states(floor, crossing, method, duration):
     forces = record.forces[:, :, 0]
     push = (forces - crossing.vehicle.static_forces) @ crossing.vehicle.contact_map
     e, k = springs.contact_map, springs.stiffness
-    still = np.linalg.solve(springs.standing_stiffness, e.T @ (k * road.elevation[0]))[:, 0]
+    still = np.linalg.solve(springs.standing_stiffness, e.T @ (k * road.start))[:, 0]
     states = [np.concatenate([still, 0 * still])]
     for before, after in itertools.pairwise(push):
         states.append(
@@ -136,9 +141,7 @@ def balance(vehicle, integration, damping, duration=2.4):
     crossing = way(vehicle)
     method = Coupled(integration=integration, damping=damping, contact=Hermite())
     states = direct_states if isinstance(integration, Newmark) else modal_states
-    (timeline, road, rows), (z, zd, q, qd), forces, parts = states(
-        floor, crossing, method, duration
-    )
+    (timeline, _, rows), (z, zd, q, qd), forces, parts = states(floor, crossing, method, duration)
     mass, strain, heat, shapes = parts
     dt, first = integration.dt, timeline.n_run_in
     n_c = vehicle.n_contacts
@@ -149,7 +152,8 @@ def balance(vehicle, integration, damping, duration=2.4):
     under = np.einsum("tcm,tm->tc", value, q)
     drift = np.einsum("tcm,tm->tc", speed * slope, q)
     rise = np.einsum("tcm,tm->tc", value, qd) + drift
-    elevation, rate = road.elevation[first:, :, 0], road.rate[first:, :, 0]
+    _, _, elevation, grade = next(drawn_roads((crossing,), timeline, range(1), 0))
+    elevation, rate = elevation[0, first:], timeline.speed[first:] * grade[0, first:]
     squeeze = under + elevation - z @ vehicle.contact_map.T
     squeeze_rate = rise + rate - zd @ vehicle.contact_map.T
 

@@ -54,14 +54,30 @@ def run(
         Path | None,
         typer.Option("--out", "-o", help="Results folder. [default: STUDY's name + '-results']"),
     ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            "--workers", "-w", min=1, help="Compute in so many processes, by dask on this machine."
+        ),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", help="Compute on a running dask cluster: tcp://host:8786."),
+    ] = None,
+    fresh: Annotated[
+        bool, typer.Option("--fresh", help="Begin anew: leave aside what a stopped run finished.")
+    ] = False,
 ) -> None:
     """Run a study: progress bars, tables on the screen, a results folder with report.html.
 
-    The folder appears only when everything is done; Ctrl-C leaves what was there before.
+    The folder appears only when everything is done. A run that is stopped, by Ctrl-C or a power
+    cut, keeps what it finished beside it; the same command goes on from there and ends with the
+    same numbers, to the last bit.
     """
     from trundle.cli import run_command
 
-    run_command.run(study, out or Path(f"{study.stem}-results"))
+    place = out or Path(f"{study.stem}-results")
+    run_command.run(study, place, workers=workers, scheduler=scheduler, fresh=fresh)
 
 
 @app.command()
@@ -135,7 +151,11 @@ def main() -> None:
 
 
 def _say_interrupted() -> None:
-    print("interrupted: no results were written, and earlier ones still stand", file=sys.stderr)
+    print(
+        "interrupted: no results were written, and earlier ones still stand; the same command "
+        "goes on with what was finished",
+        file=sys.stderr,
+    )
 
 
 def _interrupt(number: int, frame: object) -> None:

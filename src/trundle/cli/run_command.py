@@ -2,25 +2,57 @@
 
 from __future__ import annotations
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
 
 from trundle.cli.result_tables import print_result
 from trundle.cli.screen import progress_bar
+from trundle.errors import InputError
 from trundle.report import write_report
 from trundle.study.build import load_study
 from trundle.study.run import run_study
+from trundle.study.scale_out import Cluster, cluster_at, local_cluster
 from trundle.study.store import check_target, new_results_folder, write_results
+from trundle.study.unfinished import unfinished_of
 
 __all__ = ["run"]
 
 
-def run(path: Path, out: Path) -> None:
+@contextmanager
+def _cluster(workers: int | None, scheduler: str | None) -> Generator[Cluster | None]:
+    """Give the cluster that is asked for, if any."""
+    if scheduler is not None:
+        with cluster_at(scheduler) as cluster:
+            yield cluster
+    elif workers is not None:
+        with local_cluster(workers) as cluster:
+            yield cluster
+    else:
+        yield None
+
+
+def run(path: Path, out: Path, *, workers: int | None, scheduler: str | None, fresh: bool) -> None:
     """Run a study and write its results folder."""
+    if workers is not None and scheduler is not None:
+        raise InputError("--workers starts a cluster and --scheduler uses one: give one of them")
     study = load_study(path)
     check_target(out)
     place = out.resolve()
-    with progress_bar() as tell, new_results_folder(out) as folder:
-        result = run_study(study, report=lambda what, share: tell(what, 0.94 * share))
+    with (
+        unfinished_of(study, out, fresh=fresh) as store,
+        _cluster(workers, scheduler) as cluster,
+        progress_bar() as tell,
+        new_results_folder(out) as folder,
+    ):
+        if store.n_found:
+            tell(f"going on from {store.n_found} finished pieces of an earlier run", 0.0)
+        result = run_study(
+            study,
+            report=lambda what, share: tell(what, 0.94 * share),
+            store=store,
+            cluster=cluster,
+        )
         tell("writing results", 0.94)
         write_results(result, folder)
         write_report(result, folder, tell=lambda what, share: tell(what, 0.95 + 0.05 * share))

@@ -137,9 +137,9 @@ def exact_rows(result: StudyResult) -> list[ExactRow]:
     """Return exact statistics beside sampled ones, one row a cell and point that has them."""
     rows = []
     for key, cell in result.cells.items():
-        if cell.exact is None:
+        if cell.exact is None or cell.exact_peaks is None:
             continue
-        exact, medians, highs = cell.exact, cell.exact.peak(50.0), cell.exact.peak(95.0)
+        exact, (medians, highs) = cell.exact, cell.exact_peaks
         for i, point in enumerate(result.study.points):
             peaks = cell.peak_acceleration[:, i] / GAL
             low, high = percentile_interval(peaks, 95.0)

@@ -2,7 +2,13 @@
 
 from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
 from trundle.response.peaks import Process, peak_levels
-from trundle.response.reduction import Reduced, join, percentile_interval, reduce_runs
+from trundle.response.reduction import (
+    Reduced,
+    join,
+    percentile_interval,
+    reduce_rougher,
+    reduce_runs,
+)
 from trundle.response.spectra import BandSpectra, velocity_spectra
 from trundle.response.statistics import ExactStatistics, exact_statistics
 
@@ -17,6 +23,7 @@ __all__ = [
     "peak_levels",
     "percentile_interval",
     "percentile_rank",
+    "reduce_rougher",
     "reduce_runs",
     "upper_bounds",
     "velocity_spectra",

@@ -13,9 +13,11 @@ from trundle._checks import within
 from trundle._typing import Array, ArrayLike
 from trundle.response.spectra import BandSpectra, velocity_spectra
 from trundle.signals import Averaging
-from trundle.simulate import Runs
+from trundle.simulate import MeanResponse, Runs
 
-__all__ = ["Reduced", "join", "percentile_interval", "reduce_runs"]
+__all__ = ["Reduced", "join", "percentile_interval", "reduce_rougher", "reduce_runs"]
+
+_TOGETHER = 64  # runs whose filtered histories are held at once
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -63,6 +65,35 @@ def reduce_runs(runs: Runs, *, averaging: Averaging = "max_1s") -> Reduced:
         peak_contact_force=runs.contact_forces.max(axis=1),
         tension=np.any(runs.contact_forces < 0.0, axis=1),
     )
+
+
+def reduce_rougher(
+    runs: Runs, mean: MeanResponse, factors: Sequence[float], *, averaging: Averaging = "max_1s"
+) -> list[Reduced]:
+    """Reduce some runs as they are on roads of other roughness.
+
+    Parameters
+    ----------
+    runs : Runs
+        Runs with histories.
+    mean : MeanResponse
+        Response without roughness.
+    factors : sequence of float
+        How many times larger the elevations are on each road.
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule of the band levels.
+
+    Returns
+    -------
+    list of Reduced
+        One for each factor.
+    """
+    found: list[list[Reduced]] = [[] for _ in factors]
+    for start in range(0, runs.n_runs, _TOGETHER):
+        some = runs.part(slice(start, start + _TOGETHER))
+        for kept, factor in zip(found, factors, strict=True):
+            kept.append(reduce_runs(some.rougher(mean, factor), averaging=averaging))
+    return [join(parts) for parts in found]
 
 
 def join(parts: Sequence[Reduced]) -> Reduced:

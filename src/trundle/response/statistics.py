@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 
@@ -11,6 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 from scipy import signal
 
+from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.response.peaks import Process, peak_levels
 from trundle.signals import band_edges, band_filter, mid_band_frequencies, usable_bands
@@ -91,10 +91,15 @@ class ExactStatistics:
 
         An approximation, unlike the rest: see `peak_levels`.
         """
+        return self.peaks([share], quantity)[0]
+
+    def peaks(
+        self, shares: Sequence[float], quantity: str = "acceleration"
+    ) -> Float[Array, "shares points"]:
+        """Return `peak` for several shares at once."""
         process = self.processes[quantity]
-        return np.array(
-            [peak_levels(process.at(i), [share])[0] for i in range(len(self.point_names))]
-        )
+        levels = [peak_levels(process.at(i), shares) for i in range(len(self.point_names))]
+        return np.transpose(levels)
 
     def rougher(self, factor: float) -> ExactStatistics:
         """Return the statistics for a road whose elevation is so many times larger."""
@@ -187,7 +192,7 @@ def _add(sums: _Sums, answer: Harmonics, filters: list[Array]) -> None:
         sums.add(f"cross {name}", np.sum(power * both.real, axis=0))
         sums.add(f"turn {name}", np.sum(power * both.imag, axis=0))
     velocity = np.moveaxis(answer.velocity, 1, -1)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(n_threads()) as pool:
         energy = list(pool.map(lambda sos: _energy(sos, velocity, answer.power), filters))
     sums.add("bands", np.array(energy).reshape(len(filters), *velocity.shape[1:]))
     sums.n_waves += len(answer.power)

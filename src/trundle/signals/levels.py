@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import Literal, TypeAlias, get_args
@@ -12,6 +11,7 @@ from jaxtyping import Float
 from scipy import signal
 
 from trundle._checks import one_of, positive
+from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.signals.bands import band_filter
 
@@ -81,7 +81,7 @@ def band_levels(
         samples = _faded_out(samples, round(_WINDOW * sampling_frequency))
 
     level = partial(_band_level, samples, sampling_frequency, averaging)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(n_threads()) as pool:
         return np.stack(list(pool.map(level, mid_band)))
 
 

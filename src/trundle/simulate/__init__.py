@@ -3,7 +3,7 @@
 from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
 from trundle.simulate._residual import StaticFlexibility
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
-from trundle.simulate.ensemble import batches, contact_forces, ensemble
+from trundle.simulate.ensemble import batches, contact_forces, ensemble, runs_with_mean
 from trundle.simulate.harmonics import (
     Harmonics,
     Waves,
@@ -40,4 +40,5 @@ __all__ = [
     "mean_response",
     "place_waves",
     "prepare",
+    "runs_with_mean",
 ]

@@ -2,34 +2,33 @@
 
 from __future__ import annotations
 
-import os
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from jaxtyping import Float
 from scipy import linalg
 
+from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import ExactRecursion
 from trundle.errors import UnstableStepError
-from trundle.simulate._blocks import (
-    Block,
-    ContactMaps,
-    FloorPowers,
-    VehiclePowers,
-    contact_block,
-    load_block,
-)
+from trundle.simulate._blocks import Block, contact_block, load_block
 from trundle.simulate._march import Progress, Record, Springs
 from trundle.simulate._modal_floor import ModalFloor
+from trundle.simulate._powers import FloorPowers, VehiclePowers
 from trundle.simulate._schedule import RoadUnderWheels, Timeline
 
 __all__ = ["Steps", "drive_in_blocks"]
 
-_BLOCK = 16  # steps; more would spend more on forming maps, fewer on applying them
-_COLUMNS = 64  # runs in one product; the same whatever the machine, so that bits are too
+_LONGEST = 32  # steps in a block; more would spend more on forming maps, fewer on applying them
+_FORCES = 192  # contact forces in a block: their system is solved densely
+_STRETCH = 8  # blocks that a slice is carried over at a time, while the next are formed
+_ROWS = 512  # of the state, that forces are added to at a time
+_COLUMNS = 128  # runs in one product; the same whatever the machine, so that bits are too
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,7 +79,7 @@ def drive_in_blocks(
     progress : callable, optional
         Told the share of steps done.
     """
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    with ThreadPoolExecutor(n_threads()) as pool:
         march = _March(steps, road, weight, pool)
         if static:
             march.stand(floor if coupled else None)
@@ -107,14 +106,16 @@ class _March:
         push = np.hstack(
             [springs.stiffness * springs.contact_map, springs.damping * springs.contact_map]
         )
-        self._vehicle = VehiclePowers(steps.vehicle, springs.contact_map, push, _BLOCK)
+        self._length = block_length(self._n)
+        self._vehicle = VehiclePowers(steps.vehicle, springs.contact_map, push, self._length)
         still = linalg.solve(
             springs.standing_stiffness,
-            springs.contact_map.T @ (springs.stiffness * road.elevation[0]),
+            springs.contact_map.T @ (springs.stiffness * road.start),
         )
         self._z = np.vstack([still, np.zeros_like(still)])
-        self._dynamic = -springs.stiffness * (springs.contact_map @ still - road.elevation[0])
+        self._dynamic = -springs.stiffness * (springs.contact_map @ still - road.start)
         self._x: list[Array] = []
+        self._work = _Work()
 
     def stand(self, floor: ModalFloor | None) -> None:
         """Put vehicle and floor in static equilibrium at time 0.
@@ -122,7 +123,7 @@ class _March:
         With S the floor's static sinking under unit forces, ``K_v z = E^T k (r - S f)`` and
         ``f = static - k (E z - r + S f)`` are solved together.
         """
-        springs, height = self._steps.springs, self._road.elevation[0]
+        springs, height = self._steps.springs, self._road.start
         e, k, static = springs.contact_map, springs.stiffness, springs.static * self._weight
         sink = np.zeros((self._n, self._n)) if floor is None else floor.static_sinking()
         matrix = np.block(
@@ -146,11 +147,9 @@ class _March:
 
     def run_in(self) -> None:
         """Drive on rigid ground up to time 0."""
-        block: Block | None = None
-        for first, n_steps in _parts(self._steps.timeline.n_run_in):
-            if block is None or block.n_steps != n_steps:
-                block = self._rigid(n_steps)
-            self._carry(block, first, None)
+        forming = self._form(None, solve=True)
+        parts = _parts(self._steps.timeline.n_run_in, self._length)
+        self._carry([(first, forming(first, count)) for first, count in parts], 0, None, None)
 
     def record(
         self, floor: ModalFloor | None, forces: Array | None, progress: Progress | None
@@ -160,153 +159,198 @@ class _March:
         n_steps = len(timeline.time) - timeline.n_run_in
         if floor is not None and not self._x:
             self.rest(floor, None)
-        out = _Histories(floor, n_steps, self._n, len(self._weight))
-        out.begin(
-            np.hstack(self._x) if self._x else np.zeros((0, 0)),
-            self._total(self._dynamic) if forces is None else forces[0],
-        )
-        forming = self._form(floor, forces is None)
-        parts = list(_parts(n_steps - 1))
-        later = self._pool.submit(forming, *parts[0])
-        for number, (first, count) in enumerate(parts):
-            block = later.result()
-            if number + 1 < len(parts):
-                later = self._pool.submit(forming, *parts[number + 1])
-            at = timeline.n_run_in + first
-            given = None if forces is None else forces[first : first + count + 1]
-            out.add(first + 1, *self._carry(block, at, given), timeline)
+        out = _Histories(floor, timeline, self._n, len(self._weight))
+        out.begin(self._x, self._total(self._dynamic) if forces is None else forces[0])
+        forming = self._form(floor, solve=forces is None)
+
+        def stretch(parts: list[tuple[int, int]]) -> list[tuple[int, Block]]:
+            return [(first, forming(first, count)) for first, count in parts]
+
+        parts = list(_parts(n_steps - 1, self._length))
+        stretches = [parts[i : i + _STRETCH] for i in range(0, len(parts), _STRETCH)]
+        later = self._pool.submit(stretch, stretches[0])
+        for following in [*stretches[1:], []]:
+            blocks = later.result()
+            later = self._pool.submit(stretch, following)
+            self._carry(blocks, timeline.n_run_in, forces, out)
             if progress is not None:
-                progress((first + count) / n_steps)
+                progress((blocks[-1][0] + blocks[-1][1].n_steps) / n_steps)
         return out.done()
 
-    def _form(self, floor: ModalFloor | None, solve: bool) -> Callable[[int, int], Block]:
+    def _form(self, floor: ModalFloor | None, *, solve: bool) -> Callable[[int, int], Block]:
         """Return the function that forms the block after a step."""
-        if floor is None:
-            known = {_BLOCK: self._rigid(_BLOCK)}
-            return lambda _, count: known.get(count) or self._rigid(count)
-        powers = FloorPowers(floor.propagator, floor.points, _BLOCK)
         springs = self._steps.springs
         columns = (springs.stiffness[:, 0], springs.damping[:, 0], springs.static[:, 0])
+        if floor is None:
+            rigid = cache(
+                lambda count: contact_block(None, None, self._vehicle, 0, count, springs=columns)
+            )
+            return lambda _, count: rigid(count)
+        powers = FloorPowers(floor.propagator, floor.points, self._length)
         if solve:
             return lambda first, count: contact_block(
                 floor, powers, self._vehicle, first, count, springs=columns
             )
         return lambda first, count: load_block(floor, powers, first, count)
 
-    def _rigid(self, n_steps: int) -> Block:
-        springs = self._steps.springs
-        columns = (springs.stiffness[:, 0], springs.damping[:, 0], springs.static[:, 0])
-        return contact_block(None, None, self._vehicle, 0, n_steps, springs=columns)
-
     def _total(self, dynamic: Array) -> Array:
         return dynamic + self._steps.springs.static * self._weight
 
-    def _carry(self, block: Block, at: int, forces: Array | None) -> tuple[Array, Array]:
-        """Carry every run over a block that follows step `at` of the whole timeline.
+    def _carry(
+        self,
+        blocks: list[tuple[int, Block]],
+        offset: int,
+        forces: Array | None,
+        out: _Histories | None,
+    ) -> None:
+        """Carry every run over blocks, each given with the step before it.
 
-        Returns the forces after it (n_steps, n_contacts, n_runs) and the outputs at the points.
+        `offset` is where those steps start on the whole timeline; `forces` load the floor where
+        contacts are not solved.
         """
-        n_runs, rows = len(self._weight), block.n_steps * self._n
-        total = np.empty((rows, n_runs))
-        maps = block.floor
-        outputs = np.empty((0 if maps is None else len(maps.points_by_state), n_runs))
 
         def carry(number: int) -> None:
             part = self._slices[number]
-            if block.contact is not None:
-                every = self._solve(block.contact, at, number)
-                total[:, part] = every[self._n :]
-            else:
-                assert forces is not None  # contacts are solved, or their forces are known
-                every = forces[:, :, part].reshape(-1, len(self._weight[part]))
-            if maps is not None:
-                x = self._x[number]
-                outputs[:, part] = maps.points_by_state @ x + maps.points_by_forces @ every
-                gained = maps.state_by_forces @ every[maps.standing]
-                self._x[number] = _advance(maps.state_by_state, gained, x)
+            for first, block in blocks:
+                if block.floor is None:
+                    every, seen = self._solve(block, offset + first, number, None), None
+                else:
+                    every, seen = self._over_floor(block, offset + first, number, forces)
+                if out is not None:
+                    out.put(first + 1, part, every[self._n :], seen)
 
         for _ in self._pool.map(carry, range(len(self._slices))):
             pass
-        if block.contact is None and forces is not None:
-            return forces[1:], outputs
-        return total.reshape(block.n_steps, self._n, n_runs), outputs
 
-    def _solve(self, maps: ContactMaps, at: int, number: int) -> Array:
-        """Solve the contact forces of a block; return those before it and in it."""
+    def _over_floor(
+        self, block: Block, at: int, number: int, forces: Array | None
+    ) -> tuple[Array, Array]:
+        """Return all forces of a block on some runs, and what the points do; carry their floor."""
+        maps = block.floor
+        assert maps is not None  # the caller has looked
+        x = self._x[number]
+        if forces is None:
+            felt = self._work.product("felt", maps.contact_rows, x)
+            every = self._solve(block, at, number, felt)
+        else:
+            first = at - self._steps.timeline.n_run_in
+            given = forces[first : first + block.n_steps + 1, :, self._slices[number]]
+            every = given.reshape(-1, given.shape[2])
+        seen = self._work.product("seen", maps.point_rows, x)
+        seen += maps.points_by_forces @ every
+        if maps.advance is not None:
+            _advance(maps.advance, x, self._work.array("advance", x.shape))
+        pressing = every[maps.standing]
+        for top in range(0, len(x), _ROWS):  # what is added is still in cache
+            part = slice(top, top + _ROWS)
+            x[part] += self._work.product("state", maps.state_by_forces[part], pressing)
+        return every, seen
+
+    def _solve(self, block: Block, at: int, number: int, felt: Array | None) -> Array:
+        """Solve the contact forces of a block; return those before it and in it.
+
+        `felt` is what the floor's state alone gives contacts that stand on it.
+        """
+        maps = block.contact
+        assert maps is not None  # the caller has looked
         part = self._slices[number]
-        springs, weight = self._steps.springs, self._weight[part]
-        n_steps = len(maps.by_weight) // self._n
-        rows = slice(at + 1, at + 1 + n_steps)
-        push = springs.stiffness * self._road.elevation[rows, :, part]
-        push += springs.damping * self._road.rate[rows, :, part]
+        static, weight = self._steps.springs.static[:, 0], self._weight[part]
+        push = self._road.push[at + 1 : at + 1 + block.n_steps, :, part]
         before, z = self._dynamic[:, part], self._z[:, part]
-        dynamic = maps.by_road @ push.reshape(-1, len(weight))
-        dynamic += maps.by_vehicle @ z
-        dynamic += maps.by_before @ before
-        dynamic += np.outer(maps.by_weight, weight)
-        if maps.floor_rows is not None:
-            dynamic += maps.by_floor @ (maps.floor_rows @ self._x[number])
+        known = [push.reshape(-1, len(weight)), z, before, weight[None]]
+        dynamic = maps.by_known @ np.vstack(known if felt is None else [*known, felt])
         every = np.vstack([before, dynamic])
-        self._z[:, part] = maps.vehicle_by_vehicle @ z + maps.vehicle_by_forces @ every
+        self._z[:, part] = maps.vehicle @ np.vstack([z, every])
         self._dynamic[:, part] = dynamic[-self._n :]
-        every += np.outer(np.tile(springs.static[:, 0], n_steps + 1), weight)
+        every += np.outer(np.tile(static, block.n_steps + 1), weight)
         return every
 
 
-def _advance(powers: tuple[Array, ...], gained: Array, x: Array) -> Array:
-    """Add the free motion of every mode over the block to what the forces gained."""
+def _advance(power: Array, x: Array, work: Array) -> None:
+    """Let every mode move freely, in place."""
     half = len(x) // 2
-    u, v, work = x[:half], x[half:], np.empty((half, x.shape[1]))
-    for row, (on_u, on_v) in enumerate((powers[:2], powers[2:])):
-        here = gained[row * half : (row + 1) * half]
-        for power, values in ((on_u, u), (on_v, v)):
-            np.multiply(power, values, out=work)
-            here += work
-    return gained
+    u, v, old, more = x[:half], x[half:], work[:half], work[half:]
+    (uu, uv), (vu, vv) = power[..., None]
+    old[:] = u
+    u *= uu
+    u += np.multiply(uv, v, out=more)
+    v *= vv
+    v += np.multiply(vu, old, out=more)
 
 
-def _parts(n_steps: int) -> Iterator[tuple[int, int]]:
+class _Work(threading.local):
+    """Each thread's own room for large products: fresh memory costs more than they do."""
+
+    def __init__(self) -> None:
+        self._room: dict[str, Array] = {}
+
+    def array(self, name: str, shape: tuple[int, int]) -> Array:
+        """Return room for an array; what was there under its name is lost."""
+        size = shape[0] * shape[1]
+        if name not in self._room or self._room[name].size < size:
+            self._room[name] = np.empty(size)
+        return self._room[name][:size].reshape(shape)
+
+    def product(self, name: str, a: Array, b: Array) -> Array:
+        """Return a matrix product in the room of a name."""
+        return np.matmul(a, b, out=self.array(name, (a.shape[0], b.shape[1])))
+
+
+def block_length(n_contacts: int) -> int:
+    """Return how many steps a block has: fewer for many wheels, whose system is dense."""
+    return int(np.clip(_FORCES // n_contacts, 8, _LONGEST))
+
+
+def _parts(n_steps: int, length: int) -> Iterator[tuple[int, int]]:
     """Give the step before each block and the number of steps in it."""
-    for first in range(0, n_steps, _BLOCK):
-        yield first, min(_BLOCK, n_steps - first)
+    for first in range(0, n_steps, length):
+        yield first, min(length, n_steps - first)
 
 
 class _Histories:
     """Collect forces and outputs block by block, and stop at the first that is not finite."""
 
     def __init__(
-        self, floor: ModalFloor | None, n_steps: int, n_contacts: int, n_runs: int
+        self, floor: ModalFloor | None, timeline: Timeline, n_contacts: int, n_runs: int
     ) -> None:
-        self._floor = floor
+        self._floor, self._time = floor, timeline.time[timeline.n_run_in :]
         n_points = 0 if floor is None else len(floor.points)
-        self._motion = np.zeros((3, n_steps, n_points, n_runs))
-        self._forces = np.zeros((n_steps, n_contacts, n_runs))
+        self._motion = np.zeros((3, len(self._time), n_points, n_runs))
+        self._forces = np.zeros((len(self._time), n_contacts, n_runs))
 
-    def begin(self, x: Array, forces: Array) -> None:
+    def begin(self, states: list[Array], forces: Array) -> None:
         self._forces[0] = forces
         if self._floor is not None:
+            x = np.hstack(states)
             half, points = len(x) // 2, self._floor.points
             self._motion[0, 0] = points @ x[:half]
             load = self._floor.loads(0, 1)[0].T @ forces
             held = (points * self._floor.propagator.square) @ x[:half]
             self._motion[2, 0] = -points @ load - held
 
-    def add(self, step: int, forces: Array, outputs: Array, timeline: Timeline) -> None:
-        n_steps, n_runs = len(forces), forces.shape[2]
-        rows = slice(step, step + n_steps)
-        self._forces[rows] = forces
-        if outputs.size:
-            self._motion[:, rows] = outputs.reshape(n_steps, 3, -1, n_runs).swapaxes(0, 1)
-        if not (np.isfinite(forces).all() and np.isfinite(outputs).all()):
-            bad = ~np.isfinite(forces).all(axis=(1, 2))
-            late = step + (int(np.argmax(bad)) if bad.any() else n_steps - 1)
-            time = float(timeline.time[timeline.n_run_in + late])
-            raise UnstableStepError(
-                f"a number stopped being finite at step {late}, t = {time:g} s; "
-                "shorten the time step",
-                step=late,
-                time=time,
-            )
+    def put(self, step: int, runs: slice, forces: Array, seen: Array | None) -> None:
+        """Keep what some runs do from a step on."""
+        n_runs = forces.shape[1]
+        forces = forces.reshape(-1, self._forces.shape[1], n_runs)
+        rows = slice(step, step + len(forces))
+        self._forces[rows, :, runs] = forces
+        whole = bool(np.isfinite(forces).all())
+        if seen is not None:
+            motion = seen.reshape(len(forces), 3, -1, n_runs)
+            self._motion[:, rows, :, runs] = motion.swapaxes(0, 1)
+            whole = whole and bool(np.isfinite(seen).all())
+        if not whole:
+            self._stop(step, forces)
+
+    def _stop(self, step: int, forces: Array) -> None:
+        bad = ~np.isfinite(forces).all(axis=(1, 2))
+        late = step + (int(np.argmax(bad)) if bad.any() else len(forces) - 1)
+        time = float(self._time[late])
+        raise UnstableStepError(
+            f"a number stopped being finite at step {late}, t = {time:g} s; shorten the time step",
+            step=late,
+            time=time,
+        )
 
     def done(self) -> Record:
         return Record(

@@ -67,13 +67,13 @@ class Record:
     acceleration: Float[Array, "steps points runs"]
     forces: Float[Array, "steps contacts runs"]
 
-    def plus(self, displacement: Array, velocity: Array, acceleration: Array) -> Record:
-        """Return the record with more motion at the points."""
+    def columns(self, runs: slice) -> Record:
+        """Return some of the runs."""
         return Record(
-            displacement=self.displacement + displacement,
-            velocity=self.velocity + velocity,
-            acceleration=self.acceleration + acceleration,
-            forces=self.forces,
+            displacement=self.displacement[..., runs],
+            velocity=self.velocity[..., runs],
+            acceleration=self.acceleration[..., runs],
+            forces=self.forces[..., runs],
         )
 
 
@@ -84,9 +84,9 @@ def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[
     """
     e, k = law.springs.contact_map, law.springs.stiffness
     ground = RigidGround(len(k))
-    still = ground.start(road.elevation.shape[2], None)
-    z = linalg.solve(law.springs.standing_stiffness, e.T @ (k * road.elevation[0]))
-    forces = law.springs.static - k * (e @ z - road.elevation[0])
+    still = ground.start(road.n_runs, None)
+    z = linalg.solve(law.springs.standing_stiffness, e.T @ (k * road.start))
+    forces = law.springs.static - k * (e @ z - road.start)
     state = law.vehicle.start(z)
     for at in range(1, timeline.n_run_in + 1):
         state, _, forces = _step(law, ground, (state, still, forces), at, road, step=at)
@@ -107,7 +107,7 @@ def static_start(
     matrix = np.block(
         [[springs.standing_stiffness, e.T @ (k * sink)], [k * e, np.eye(len(k)) + k * sink]]
     )
-    right = np.vstack([e.T @ (k * road.elevation[0]), springs.static + k * road.elevation[0]])
+    right = np.vstack([e.T @ (k * road.start), springs.static + k * road.start])
     solution = linalg.solve(matrix, right)
     z, forces = np.split(solution, [e.shape[1]])
     return law.vehicle.start(z), floor.start(forces.shape[1], forces), forces
@@ -181,9 +181,9 @@ def _step(
     sink, sink_rate = floor.compliance(step)
     lift = law.vehicle.respond(e.T)
     stiff = k * (e @ lift.displacement + sink) + c * (e @ lift.velocity + sink_rate)
-    gap = e @ free.displacement - road.elevation[at] - height + sink @ springs.static
-    gap_rate = e @ free.velocity - road.rate[at] - rate + sink_rate @ springs.static
-    dynamic = np.linalg.solve(np.eye(len(k)) + stiff, -(k * gap + c * gap_rate))
+    gap = e @ free.displacement - height + sink @ springs.static
+    gap_rate = e @ free.velocity - rate + sink_rate @ springs.static
+    dynamic = np.linalg.solve(np.eye(len(k)) + stiff, road.push[at] - k * gap - c * gap_rate)
     forces = springs.static + dynamic
     load = e.T @ dynamic
     change = law.vehicle.respond(load)

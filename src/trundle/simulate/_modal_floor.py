@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
@@ -37,12 +37,15 @@ class ModalFloor:
         self.n_modes = modes.n_modes
         self.speed = speed
         self.points = np.ascontiguousarray(points @ modes.shapes)
-        self._modes, self._rows, self._n = modes, rows, speed.shape[1]
+        self.n_contacts = self._n = speed.shape[1]
+        self._square, self._rows = modes.omega**2, rows
         # Only the route's dofs are read; together they stay in cache.
         used = rows.used_dofs()
         self._route_shapes = np.ascontiguousarray(modes.shapes[used])
         self._at = np.minimum(np.searchsorted(used, rows.dofs), max(0, len(used) - 1))
         self._load_share = rows.load_share.reshape(-1, self._n)
+        stands = (rows.value != 0.0) | (rows.slope != 0.0)
+        self._stands = stands.any(axis=1).reshape(-1, self._n)
         self._chunks: dict[int, tuple[Array, Array]] = {}
         self._residual = (
             None if flexibility is None else _Residual(rows, self._n, modes, flexibility)
@@ -56,17 +59,25 @@ class ModalFloor:
         for number in range(first, last + 1):
             if number not in self._chunks:
                 self._chunks[number] = self._chunk(number * _CHUNK)
-        parts = [self._chunks[number] for number in range(first, last + 1)]
-        here = slice(start - first * _CHUNK, stop - first * _CHUNK)
+        parts = []
+        for number in range(first, last + 1):
+            at = number * _CHUNK
+            here = slice(max(0, start - at), min(_CHUNK, stop - at))
+            parts.append([values[here] for values in self._chunks[number]])
         if len(parts) == 1:
-            return parts[0][0][here], parts[0][1][here]
+            return parts[0][0], parts[0][1]
         value, slope = (np.concatenate(pair) for pair in zip(*parts, strict=True))
-        return value[here], slope[here]
+        return value, slope
 
-    def loads(self, start: int, stop: int) -> Array:
-        """Return the modal load of a unit force of each wheel, (n_steps, n_contacts, n_modes)."""
+    def on_floor(self, start: int, stop: int) -> Int[Array, " standing"]:
+        """Return the contacts that stand on the floor at some of these steps."""
+        return np.flatnonzero(self._stands[start:stop].any(axis=0))
+
+    def loads(self, start: int, stop: int, wheels: Int[Array, " wheels"] | None = None) -> Array:
+        """Return the modal load of a unit force of each wheel, (n_steps, n_wheels, n_modes)."""
         value, _ = self.shapes(start, stop)
-        return value * self._load_share[start:stop, :, None]
+        share = self._load_share[start:stop, :, None]
+        return value * share if wheels is None else value[:, wheels] * share[:, wheels]
 
     def residual_sinking(self, start: int, stop: int) -> Array | None:
         """Return what the modes left out add to the sinking, (n_steps, n_contacts, n_contacts)."""
@@ -75,14 +86,13 @@ class ModalFloor:
     def static_sinking(self) -> Array:
         """Return the static sinking under wheel i for a unit force of wheel j, at time 0."""
         value, _ = self.shapes(0, 1)
-        square = self._modes.omega**2
-        sinking = (value[0] / square) @ value[0].T * self._load_share[0]
+        sinking = (value[0] / self._square) @ value[0].T * self._load_share[0]
         residual = self.residual_sinking(0, 1)
         return sinking if residual is None else sinking + residual[0]
 
     def static_state(self, forces: Float[Array, "contacts runs"]) -> Float[Array, "state runs"]:
         """Return the state at rest under static forces of the wheels at time 0."""
-        q = -(self.loads(0, 1)[0].T @ forces) / (self._modes.omega**2)[:, None]
+        q = -(self.loads(0, 1)[0].T @ forces) / self._square[:, None]
         return np.vstack([q, np.zeros_like(q)])
 
     def _chunk(self, start: int) -> tuple[Array, Array]:
@@ -111,9 +121,11 @@ class _Residual:
 
     def sinking(self, start: int, stop: int) -> Array:
         at, value = self._at[start:stop], self._value[start:stop]
-        out = np.empty((stop - start, at.shape[1], at.shape[1]))
-        for i in range(at.shape[1]):
-            for j in range(at.shape[1]):
-                between = self._block[at[:, i, :, None], at[:, j, None, :]]
-                out[:, i, j] = np.einsum("sa,sab,sb->s", value[:, i], between, value[:, j])
+        n_steps, n, width = at.shape
+        starts = np.arange(0, at.size + 1, width)
+        shape = (n_steps * n, len(self._block))
+        pressing = sparse.csr_array((value.ravel(), at.ravel(), starts), shape=shape)
+        deflected = (pressing @ self._block).reshape(n_steps, n, -1)  # by each wheel, everywhere
+        under = np.take_along_axis(deflected, at.reshape(n_steps, 1, -1), axis=2)
+        out = np.einsum("sia,sjia->sij", value, under.reshape(n_steps, n, n, width))
         return out * self._load_share[start:stop, None, :]

@@ -16,10 +16,12 @@ R. R. Craig, Structural Dynamics (1981), section 15.2 (mode-acceleration method)
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from jaxtyping import Float, Int
 
+from trundle._threads import n_threads
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, factorise
 from trundle.route import ContactRows
@@ -27,9 +29,9 @@ from trundle.structure import Floor
 
 __all__ = [
     "StaticFlexibility",
+    "add_residual_motion",
     "point_residual",
     "residual_block",
-    "residual_motion",
     "unit_loads",
 ]
 
@@ -102,27 +104,45 @@ def point_residual(
     return exact - ((points @ modes.shapes) / modes.omega**2) @ modes.shapes.T
 
 
-def residual_motion(
+def add_residual_motion(
     rows: ContactRows,
     forces: Float[Array, "steps contacts runs"],
     residual: Float[Array, "points dofs"],
     dt: float,
-) -> tuple[
-    Float[Array, "steps points runs"],
-    Float[Array, "steps points runs"],
-    Float[Array, "steps points runs"],
-]:
-    """Return displacement, velocity and acceleration that the residual adds at points.
+    motion: tuple[Array, Array, Array],
+) -> None:
+    """Add to a motion what the residual gives, in place.
 
     Velocity and acceleration are central differences of the displacement.
+
+    Parameters
+    ----------
+    rows : ContactRows
+        Of the contacts at every step.
+    forces : ndarray of float, shape (n_steps, n_contacts, n_runs)
+        Contact forces [N].
+    residual : ndarray of float, shape (n_points, n_dofs)
+        Rows of R that give the response at points [m/N].
+    dt : float
+        Time step [s].
+    motion : tuple of ndarray, shapes (n_steps, n_points, n_runs)
+        Displacement, velocity and acceleration at the points.
     """
-    n_steps, n_contacts, _ = forces.shape
+    n_steps, n_contacts, n_runs = forces.shape
     influence = rows.matrix(rows.load_share[:, None] * rows.value) @ residual.T
-    influence = influence.reshape(n_steps, n_contacts, -1)
-    displacement = -np.einsum("scp,scr->spr", influence, forces, optimize=True)
-    # The floor was at rest before the record, or in the static state of its first step.
-    before = displacement[:1]
-    padded = np.concatenate([before, displacement, displacement[-1:]])
-    velocity = (padded[2:] - padded[:-2]) / (2.0 * dt)
-    acceleration = (padded[2:] - 2.0 * displacement + padded[:-2]) / dt**2
-    return displacement, velocity, acceleration
+    influence = influence.reshape(n_steps, n_contacts, -1).transpose(0, 2, 1)
+
+    def add(start: int) -> None:
+        runs = slice(start, start + _COLUMNS)
+        displacement = influence @ np.negative(forces[:, :, runs])
+        # The floor was at rest before the record, or in the static state of its first step.
+        before = np.concatenate([displacement[:1], displacement[:-1]])
+        after = np.concatenate([displacement[1:], displacement[-1:]])
+        u, v, a = (part[:, :, runs] for part in motion)
+        v += (after - before) / (2.0 * dt)
+        a += (after - 2.0 * displacement + before) / dt**2
+        u += displacement
+
+    with ThreadPoolExecutor(n_threads()) as pool:
+        for _ in pool.map(add, range(0, n_runs, _COLUMNS)):
+            pass

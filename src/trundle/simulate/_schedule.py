@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,16 @@ from trundle.route import ContactRows, ContactShape, StaticStart, contact_rows, 
 from trundle.simulate.crossing import Crossing
 from trundle.structure import Floor
 
-__all__ = ["RoadUnderWheels", "Timeline", "operator_rows", "roads_under_wheels", "timeline_of"]
+__all__ = [
+    "RoadUnderWheels",
+    "Timeline",
+    "columns_of",
+    "contact_springs",
+    "drawn_roads",
+    "operator_rows",
+    "roads_under_wheels",
+    "timeline_of",
+]
 
 _TOGETHER = 64  # roads laid beside each other at once, for the runs are the last axis
 _MARGIN = 10.0  # m of road beyond the wheels, so that none runs off its profile
@@ -45,18 +55,24 @@ class Timeline:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RoadUnderWheels:
-    """Hold the road that every wheel of every run meets.
+    """Hold what the road does to every wheel of every run.
 
     Attributes
     ----------
-    elevation : ndarray of float, shape (n_all, n_contacts, n_runs)
-        Height of the road [m].
-    rate : ndarray of float, shape (n_all, n_contacts, n_runs)
-        Its rate of change under the moving wheel, V dz/ds [m/s].
+    push : ndarray of float, shape (n_all, n_contacts, n_runs)
+        What the road adds to a contact force if vehicle and floor stand still [N]:
+        ``k r + c V dr/ds`` of its elevation r under the moving wheel.
+    start : ndarray of float, shape (n_contacts, n_runs)
+        Elevation under the wheels at the first time [m].
     """
 
-    elevation: Float[Array, "steps contacts runs"]
-    rate: Float[Array, "steps contacts runs"]
+    push: Float[Array, "steps contacts runs"]
+    start: Float[Array, "contacts runs"]
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs."""
+        return self.push.shape[2]
 
 
 def timeline_of(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Timeline:
@@ -93,19 +109,62 @@ def _own_start(crossing: Crossing, dt: float) -> float:
 
 
 def roads_under_wheels(
-    crossings: tuple[Crossing, ...], timeline: Timeline, runs: range, seed: int
+    crossings: tuple[Crossing, ...], timeline: Timeline, runs: range, seed: int, *, smooth: int = 0
 ) -> RoadUnderWheels:
-    """Draw or read the road under every wheel.
+    """Draw or read the road under every wheel; behind all runs, so many without random roads.
 
     A crossing's road depends on the seed, its route's name and the run's number alone; so
     the truck of one route meets the same road whether it drives alone or with others.
     """
-    shape = (len(timeline.time), timeline.station.shape[1], len(runs))
-    elevation, rate = np.empty(shape), np.empty(shape)
+    shape = (*timeline.station.shape, len(runs) + smooth)
+    push, first = np.empty(shape), np.empty(shape[1:])
+    push[..., len(runs) :] = 0.0
+    first[:, len(runs) :] = 0.0
+    stiffness, damping = contact_springs(crossings)
+    rolling = damping * timeline.speed
+    for columns, here, elevation, slope in drawn_roads(crossings, timeline, runs, seed):
+        felt = stiffness[columns] * elevation + rolling[:, columns] * slope
+        push[:, columns, here] = np.moveaxis(felt, 0, -1)
+        first[columns, here] = elevation[:, 0].T
+    for crossing, columns in columns_of(crossings):
+        if smooth and isinstance(crossing.road, Profile):
+            z, slope = crossing.road.at(timeline.station[:, columns])
+            felt = stiffness[columns] * z + rolling[:, columns] * slope
+            push[:, columns, len(runs) :] = felt[:, :, None]
+            first[columns, len(runs) :] = z[0][:, None]
+    return RoadUnderWheels(push=push, start=first)
+
+
+def columns_of(crossings: tuple[Crossing, ...]) -> Iterator[tuple[Crossing, slice]]:
+    """Give each crossing with its contacts among all."""
     at = 0
     for crossing in crossings:
-        columns = slice(at, at + crossing.vehicle.n_contacts)
-        at = columns.stop
+        yield crossing, slice(at, at + crossing.vehicle.n_contacts)
+        at += crossing.vehicle.n_contacts
+
+
+def contact_springs(crossings: tuple[Crossing, ...]) -> tuple[Array, Array]:
+    """Return stiffness [N/m] and damping [N s/m] of all contacts."""
+    vehicles = [crossing.vehicle for crossing in crossings]
+    return (
+        np.concatenate([vehicle.contact_stiffness for vehicle in vehicles]),
+        np.concatenate([vehicle.contact_damping for vehicle in vehicles]),
+    )
+
+
+def drawn_roads(
+    crossings: tuple[Crossing, ...], timeline: Timeline, runs: range, seed: int
+) -> Iterator[tuple[slice, slice, Array, Array]]:
+    """Draw or read roads, some runs of one crossing at a time.
+
+    Yields
+    ------
+    contacts, runs : slice
+        Whose roads these are.
+    elevation, slope : ndarray of float, shape (n_runs, n_all, n_contacts)
+        Elevation under each wheel [m] and its slope along the way [m/m].
+    """
+    for crossing, columns in columns_of(crossings):
         station, speed = timeline.station[:, columns], timeline.speed[:, columns]
         tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
         readers: list[ProfileReader] = []
@@ -122,10 +181,7 @@ def roads_under_wheels(
                     z, slope = reader.read(profile.elevation, profile.slope)
                     drawn[0, place][:, wheels] = z
                     drawn[1, place][:, wheels] = slope
-            here = slice(start, start + len(some))
-            elevation[:, columns, here] = np.moveaxis(drawn[0], 0, -1)
-            rate[:, columns, here] = speed[:, :, None] * np.moveaxis(drawn[1], 0, -1)
-    return RoadUnderWheels(elevation=elevation, rate=rate)
+            yield columns, slice(start, start + len(some)), drawn[0], drawn[1]
 
 
 def _readers(

@@ -8,19 +8,20 @@ import numpy as np
 
 from trundle._checks import count
 from trundle._typing import Array
-from trundle.simulate._schedule import roads_under_wheels
+from trundle.simulate._march import Record
+from trundle.simulate._schedule import Timeline, roads_under_wheels, timeline_of
 from trundle.simulate.crossing import Crossing, Integration, Interaction
-from trundle.simulate.fitness import fitness_warnings
+from trundle.simulate.fitness import contact_warnings
 from trundle.simulate.layout import Layout, lay_out, lay_out_on_rigid_ground
 from trundle.simulate.prepared import PreparedFloor
-from trundle.simulate.runs import Runs
+from trundle.simulate.runs import MeanResponse, Runs
 from trundle.structure import Floor
 
-__all__ = ["LEAST_BATCH", "batches", "contact_forces", "ensemble"]
+__all__ = ["LEAST_BATCH", "batches", "contact_forces", "ensemble", "runs_with_mean"]
 
 Progress = Callable[[float], None]
 
-_BATCH_BYTES = 512e6  # histories and roads held at once
+_BATCH_BYTES = 400e6  # histories and roads held at once
 LEAST_BATCH = 16  # runs held at once however long their histories are
 _MOST_RUNS = 1024  # in a batch; more would gain nothing
 
@@ -93,7 +94,7 @@ def batches(
     seed : int
         Seed of all roads.
     batch : int, optional
-        Runs in a batch; as many as 512 MB of histories hold unless given.
+        Runs in a batch; as many as 400 MB of histories hold unless given.
     progress : callable, optional
         Told the share of all runs' steps done.
 
@@ -102,39 +103,77 @@ def batches(
     Runs
         The next runs, with their histories.
     """
-    prepared, crossings = layout.prepared, layout.crossings
-    assert prepared is not None  # what `lay_out` lays out has a floor
     size = batch or batch_size(layout)
-    done, total = 0, len(runs)
-    for start in range(0, total, size):
+    for start in range(0, len(runs), size):
         part = runs[start : start + size]
-        road = roads_under_wheels(crossings, layout.timeline, part, seed)
-        share = (done / total, len(part) / total)
-        record = layout.over(road, progress=part_of(progress, *share))
-        forces = record.forces
-        yield Runs(
-            time=layout.time,
-            displacement=np.transpose(record.displacement, (2, 0, 1)),
-            velocity=np.transpose(record.velocity, (2, 0, 1)),
-            acceleration=np.transpose(record.acceleration, (2, 0, 1)),
-            contact_forces=np.transpose(forces, (2, 0, 1)),
-            point_names=layout.point_names,
-            contact_names=layout.contact_names,
-            seed=seed,
-            method=str(layout.method),
-            f_max=layout.f_max,
-            warnings=fitness_warnings(
-                crossings, layout.method, prepared.floor, prepared.modes, forces
-            ),
-        )
-        done += len(part)
+        share = (start / len(runs), len(part) / len(runs))
+        road = roads_under_wheels(layout.crossings, layout.timeline, part, seed)
+        yield _runs_of(layout, layout.over(road, progress=part_of(progress, *share)), seed)
+
+
+def runs_with_mean(
+    layout: Layout, *, runs: range, seed: int, progress: Progress | None = None
+) -> tuple[Runs, MeanResponse]:
+    """Run some runs and, beside them, what the static loads give without random roads.
+
+    Parameters
+    ----------
+    layout : Layout
+        What the runs share, from `lay_out`.
+    runs : range
+        Numbers of the runs.
+    seed : int
+        Seed of all roads.
+    progress : callable, optional
+        Told the share of steps done.
+    """
+    road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed, smooth=1)
+    record = layout.over(road, progress=progress)
+    return _runs_of(layout, record.columns(slice(0, -1)), seed), mean_of(layout, record)
+
+
+def mean_of(layout: Layout, record: Record) -> MeanResponse:
+    """Return the last column of a record as a mean response."""
+    return MeanResponse(
+        time=layout.time,
+        displacement=record.displacement[:, :, -1].copy(),
+        velocity=record.velocity[:, :, -1].copy(),
+        acceleration=record.acceleration[:, :, -1].copy(),
+        contact_forces=record.forces[:, :, -1].copy(),
+        point_names=layout.point_names,
+    )
+
+
+def _runs_of(layout: Layout, record: Record, seed: int) -> Runs:
+    tension = np.any(record.forces < 0.0, axis=(0, 1))
+    return Runs(
+        time=layout.time,
+        displacement=np.transpose(record.displacement, (2, 0, 1)),
+        velocity=np.transpose(record.velocity, (2, 0, 1)),
+        acceleration=np.transpose(record.acceleration, (2, 0, 1)),
+        contact_forces=np.transpose(record.forces, (2, 0, 1)),
+        point_names=layout.point_names,
+        contact_names=layout.contact_names,
+        seed=seed,
+        method=str(layout.method),
+        f_max=layout.f_max,
+        warnings=(*contact_warnings(float(np.mean(tension))), *layout.doubts),
+    )
 
 
 def batch_size(layout: Layout) -> int:
-    """Return how many runs 512 MB hold, a number that does not depend on the machine."""
-    n_all, n_contacts = layout.timeline.station.shape
-    each_step = 3 * len(layout.point_names) + n_contacts
-    values = 2 * n_all * n_contacts + len(layout.time) * each_step
+    """Return how many runs 400 MB hold, a number that does not depend on the machine."""
+    return _batch_size(layout.timeline, len(layout.point_names))
+
+
+def runs_at_once(crossings: tuple[Crossing, ...], dt: float, duration: float, n_points: int) -> int:
+    """Return the batch size of a layout that is not laid out yet."""
+    return _batch_size(timeline_of(crossings, dt, duration), n_points)
+
+
+def _batch_size(timeline: Timeline, n_points: int) -> int:
+    n_all, n_contacts = timeline.station.shape
+    values = n_all * n_contacts + (n_all - timeline.n_run_in) * (3 * n_points + n_contacts)
     return int(np.clip(_BATCH_BYTES / (8.0 * values), LEAST_BATCH, _MOST_RUNS))
 
 

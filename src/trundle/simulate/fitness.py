@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from trundle._typing import Array
 from trundle.dynamics import Modal, Modes, Newmark, Rayleigh
 from trundle.errors import FitnessWarning
 from trundle.road import FITTED_RANGE, RoadClass
@@ -27,9 +26,8 @@ def fitness_warnings(
     method: Interaction,
     floor: Floor,
     modes: Modes | None,
-    forces: Array,
 ) -> tuple[FitnessWarning, ...]:
-    """Return every doubt about an ensemble's fitness, worst first where they rank.
+    """Return the doubts about a method on a floor, whatever the road.
 
     Parameters
     ----------
@@ -41,11 +39,8 @@ def fitness_warnings(
         The floor.
     modes : Modes or None
         Modes used, where the method used modes.
-    forces : ndarray of float, shape (n_steps, n_contacts, n_runs)
-        Contact forces [N].
     """
     found = [
-        *contact_warnings(float(np.mean(np.any(forces < 0.0, axis=(0, 1))))),
         *_time_step(method),
         *_truncation(method),
         *_rayleigh(method),

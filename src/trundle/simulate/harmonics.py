@@ -17,10 +17,15 @@ from trundle._checks import count
 from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.errors import InputError
-from trundle.road import Profile, RoadClass, RoughnessBand, track_coherence, wave_power
-from trundle.simulate._schedule import RoadUnderWheels
+from trundle.road import RoadClass, RoughnessBand, track_coherence, wave_power
+from trundle.simulate._schedule import (
+    RoadUnderWheels,
+    columns_of,
+    contact_springs,
+    roads_under_wheels,
+)
 from trundle.simulate.crossing import Crossing
-from trundle.simulate.ensemble import batch_size, part_of
+from trundle.simulate.ensemble import batch_size, mean_of, part_of
 from trundle.simulate.layout import Layout
 from trundle.simulate.runs import MeanResponse
 
@@ -117,23 +122,8 @@ def place_waves(
 
 def mean_response(layout: Layout) -> MeanResponse:
     """Return the response to the static loads alone, with given profiles but no random road."""
-    timeline = layout.timeline
-    shape = (*timeline.station.shape, 1)
-    road = RoadUnderWheels(elevation=np.zeros(shape), rate=np.zeros(shape))
-    for crossing, columns in _columns(layout.crossings):
-        if isinstance(crossing.road, Profile):
-            z, slope = crossing.road.at(timeline.station[:, columns])
-            road.elevation[:, columns, 0] = z
-            road.rate[:, columns, 0] = timeline.speed[:, columns] * slope
-    record = layout.over(road)
-    return MeanResponse(
-        time=layout.time,
-        displacement=record.displacement[:, :, 0],
-        velocity=record.velocity[:, :, 0],
-        acceleration=record.acceleration[:, :, 0],
-        contact_forces=record.forces[:, :, 0],
-        point_names=layout.point_names,
-    )
+    road = roads_under_wheels(layout.crossings, layout.timeline, range(0), 0, smooth=1)
+    return mean_of(layout, layout.over(road))
 
 
 def harmonics(
@@ -160,7 +150,7 @@ def harmonics(
         raise InputError("exact statistics step the floor in its modes: choose Modal")
     sets = [
         part
-        for crossing, columns in _columns(layout.crossings)
+        for crossing, columns in columns_of(layout.crossings)
         if isinstance(crossing.road, RoadClass)
         for part in _wave_sets(layout, crossing, columns, n_waves)
     ]
@@ -249,26 +239,26 @@ def _wave_road(layout: Layout, sets: list[_WaveSet]) -> RoadUnderWheels:
     timeline = layout.timeline
     total = sum(len(part.n) for part in sets)
     shape = (*timeline.station.shape, 2 * total)
-    road = RoadUnderWheels(elevation=np.zeros(shape), rate=np.zeros(shape))
+    road = RoadUnderWheels(push=np.zeros(shape), start=np.zeros(shape[1:]))
+    stiffness, damping = contact_springs(layout.crossings)
     at = 0
     for part in sets:
         cosine = slice(at, at + len(part.n))
         sine = slice(total + cosine.start, total + cosine.stop)
         angle = 2.0 * np.pi * timeline.station[:, part.columns, None] * part.n
         turning = 2.0 * np.pi * timeline.speed[:, part.columns, None] * part.n
-        amplitude = part.share.T
-        waves = amplitude * np.cos(angle), amplitude * np.sin(angle)
-        road.elevation[:, part.columns, cosine] = waves[0]
-        road.elevation[:, part.columns, sine] = waves[1]
-        road.rate[:, part.columns, cosine] = -turning * waves[1]
-        road.rate[:, part.columns, sine] = turning * waves[0]
+        k, c = (values[part.columns, None] for values in (stiffness, damping))
+        felt = part.share.T * (k + 1j * c * turning) * np.exp(1j * angle)
+        for place, take in ((cosine, np.real), (sine, np.imag)):
+            road.push[:, part.columns, place] = take(felt)
+            road.start[part.columns, place] = part.share.T * take(np.exp(1j * angle[0]))
         at = cosine.stop
     return road
 
 
 def _answers(layout: Layout, sets: list[_WaveSet], *, progress: Progress | None) -> Harmonics:
     road = _wave_road(layout, sets)
-    weight = np.zeros(road.elevation.shape[2])
+    weight = np.zeros(road.n_runs)
     record = layout.over(road, weight=weight, progress=progress)
     station = layout.timeline.station[layout.timeline.n_run_in :]
     phases = [2.0 * np.pi * part.n[:, None] * station[:, part.columns.start] for part in sets]
@@ -296,10 +286,3 @@ def _resonances(crossing: Crossing, speed: float) -> Array:
     return np.column_stack(
         [frequency[keep] / (2.0 * np.pi * speed), -np.real(poles)[keep] / frequency[keep]]
     )
-
-
-def _columns(crossings: tuple[Crossing, ...]) -> Iterator[tuple[Crossing, slice]]:
-    at = 0
-    for crossing in crossings:
-        yield crossing, slice(at, at + crossing.vehicle.n_contacts)
-        at += crossing.vehicle.n_contacts

@@ -22,7 +22,7 @@ from trundle.dynamics import (
     NewmarkPropagator,
     block_diagonal,
 )
-from trundle.errors import InputError
+from trundle.errors import FitnessWarning, InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor, RigidGround
@@ -37,7 +37,7 @@ from trundle.simulate._march import (
     static_start,
 )
 from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._residual import point_residual, residual_motion
+from trundle.simulate._residual import add_residual_motion, point_residual
 from trundle.simulate._schedule import (
     RoadUnderWheels,
     Timeline,
@@ -45,6 +45,7 @@ from trundle.simulate._schedule import (
     timeline_of,
 )
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
+from trundle.simulate.fitness import fitness_warnings
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.structure import Floor
 
@@ -63,8 +64,8 @@ class Layout:
         Who drives where.
     method : Decoupled or Coupled
         By what method.
-    prepared : PreparedFloor or None
-        The floor; None is rigid ground.
+    doubts : tuple of FitnessWarning
+        Doubts about the method on this floor, whatever the road.
     point_names : tuple of str
         Where the response is read.
     timeline : Timeline
@@ -77,7 +78,7 @@ class Layout:
 
     crossings: tuple[Crossing, ...]
     method: Interaction
-    prepared: PreparedFloor | None
+    doubts: tuple[FitnessWarning, ...]
     point_names: tuple[str, ...]
     timeline: Timeline
     floor: ModalFloor | FullFloor | None
@@ -129,7 +130,7 @@ class Layout:
         progress: Progress | None = None,
     ) -> Record:
         """Drive over a road for every run; `weight` scales each run's static wheel loads."""
-        n_runs = road.elevation.shape[2]
+        n_runs = road.n_runs
         weight = np.ones(n_runs) if weight is None else weight
         # Work is shared out in columns or by the sparse solver; threads of small products that
         # wait for each other would only take the cores.
@@ -150,10 +151,10 @@ class Layout:
                     static=self.static,
                     progress=progress,
                 )
-        if self.residual is not None:
-            rows, residual = self.residual
-            dt = self.integration.dt
-            record = record.plus(*residual_motion(rows, record.forces, residual, dt))
+            if self.residual is not None:
+                rows, residual = self.residual
+                motion = record.displacement, record.velocity, record.acceleration
+                add_residual_motion(rows, record.forces, residual, self.integration.dt, motion)
         return record
 
     def _step_by_step(self, road: RoadUnderWheels, progress: Progress | None) -> Record:
@@ -166,7 +167,7 @@ class Layout:
         if not isinstance(floor, FullFloor) or not self.coupled:
             ground = RigidGround(len(law.springs.static))
             vehicle, forces = run_in(law, timeline, road)
-            still = ground.start(road.elevation.shape[2], None)
+            still = ground.start(road.n_runs, None)
             rigid = drive(law, ground, (vehicle, still, forces), timeline, road)
             if not isinstance(floor, FullFloor):
                 return rigid
@@ -175,7 +176,7 @@ class Layout:
             start = static_start(law, floor, road)
             return drive(law, floor, start, timeline, road, progress=progress)
         vehicle, forces = run_in(law, timeline, road)
-        still = floor.start(road.elevation.shape[2], None)
+        still = floor.start(road.n_runs, None)
         return drive(law, floor, (vehicle, still, forces), timeline, road, progress=progress)
 
 
@@ -227,7 +228,7 @@ def lay_out(
     return Layout(
         crossings=many,
         method=method,
-        prepared=floor,
+        doubts=fitness_warnings(many, method, floor.floor, floor.modes),
         point_names=tuple(points),
         timeline=timeline,
         floor=_floor_under_wheels(floor, rows, timeline, reader, coupled=coupled),
@@ -242,7 +243,7 @@ def lay_out_on_rigid_ground(
     return Layout(
         crossings=(crossing,),
         method=Decoupled(integration=integration, damping=ModalRatio(ratio=0.0)),
-        prepared=None,
+        doubts=(),
         point_names=(),
         timeline=timeline_of((crossing,), integration.dt, duration),
         floor=None,

@@ -109,14 +109,14 @@ class Runs:
         """Return the share of runs in which each contact would have to pull at some time."""
         return np.mean((self.contact_forces < 0.0).any(axis=1), axis=0)
 
-    def only(self, n_runs: int) -> Runs:
-        """Return the first runs, without holding on to the others' histories."""
+    def part(self, which: slice) -> Runs:
+        """Return some of the runs, without holding on to the others' histories."""
         return replace(
             self,
-            displacement=self.displacement[:n_runs].copy(),
-            velocity=self.velocity[:n_runs].copy(),
-            acceleration=self.acceleration[:n_runs].copy(),
-            contact_forces=self.contact_forces[:n_runs].copy(),
+            displacement=self.displacement[which].copy(),
+            velocity=self.velocity[which].copy(),
+            acceleration=self.acceleration[which].copy(),
+            contact_forces=self.contact_forces[which].copy(),
         )
 
     def rougher(self, mean: MeanResponse, factor: float) -> Runs:

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-
-import numpy as np
+from functools import partial
 
 from trundle.criteria import Verdict, assess_spectra
 from trundle.dynamics import Modal, Modes
 from trundle.errors import FitnessWarning
 from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
-from trundle.study.cells import Cell, CellKey, run_cells
+from trundle.structure import Floor
+from trundle.study.cells import Cell, CellKey
+from trundle.study.jobs import Job, compute, lay_out_job, plan_jobs
 from trundle.study.mode_cache import modes_of
-from trundle.study.model import Case, MethodPlan, Study
+from trundle.study.model import Study
+from trundle.study.pieces import Piece, cell_of
+from trundle.study.scale_out import Cluster
+from trundle.study.unfinished import InMemory, PieceStore
 
 __all__ = ["StudyResult", "run_study"]
 
@@ -52,7 +56,13 @@ class StudyResult:
         return {method: tuple(found) for method, found in by_method.items()}
 
 
-def run_study(study: Study, *, report: Report | None = None) -> StudyResult:
+def run_study(
+    study: Study,
+    *,
+    report: Report | None = None,
+    store: PieceStore | None = None,
+    cluster: Cluster | None = None,
+) -> StudyResult:
     """Run every case on every road by every method.
 
     Parameters
@@ -61,41 +71,55 @@ def run_study(study: Study, *, report: Report | None = None) -> StudyResult:
         A checked study.
     report : callable, optional
         Told what is being done and the share done.
+    store : PieceStore, optional
+        Where finished pieces are kept; those found there are not computed again.
+    cluster : Cluster, optional
+        Where pieces are computed; in this process unless given.
 
     Returns
     -------
     StudyResult
-        Reduced results; the same study gives the same bits.
+        Reduced results; the same study gives the same bits, whatever computes it.
     """
     tell = report or (lambda _what, _share: None)
+    store = store if store is not None else InMemory()
+    jobs = plan_jobs(study)
     modes = _all_modes(study, tell)
     base = _MODES_SHARE if modes is not None else 0.0
-    jobs = [(case, method) for method in study.methods for case in study.cases]
-    costs = np.array([_cost(study, case, method) for case, method in jobs])
-    done, total = 0.0, float(costs.sum())
-    found: dict[CellKey, Cell] = {}
-    prepared: dict[str, PreparedFloor] = {}
-    flexibility = StaticFlexibility(study.floor)
-    for (case, method), cost in zip(jobs, costs, strict=True):
-        bar = _part_of_bar(
-            tell,
-            f"{case.name}, {method.name}",
-            base + (1.0 - base) * done / total,
-            (1.0 - base) * float(cost) / total,
-        )
-        bar(0.0)
-        if method.name not in prepared:
-            interaction = method.interaction
-            prepared[method.name] = prepare(
-                study.floor,
-                interaction.integration,
-                interaction.damping,
-                modes=modes,
-                flexibility=flexibility,
-            )
-        found.update(run_cells(study, case, method, prepared[method.name], bar))
-        done += float(cost)
+    bar = _Bar(tell, base, sum(sum(job.costs(study.floor.n_dofs)) for job in jobs))
+    floors = _Floors(study.floor, modes)
+    for job in jobs:
+        costs = job.costs(study.floor.n_dofs)
+        missing = [i for i, name in enumerate(job.pieces) if not store.has(name)]
+        bar.skip(sum(cost for i, cost in enumerate(costs) if i not in missing))
+        if not missing:
+            continue
+        bar.label = f"{job.case.name}, {job.method.name}"
+        bar.part(0.0, 0.0)
+        if cluster is not None:
+            carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
+            cluster.submit(job, missing, carrier)
+            cluster.collect(_keeping(store, bar, jobs, study), wait=False)
+            continue
+        layout = lay_out_job(job, floors.of(job))
+        for i in missing:
+            store.save(job.pieces[i], compute(job, layout, i, partial(bar.part, costs[i])))
+            bar.skip(costs[i])
+    if cluster is not None:
+        cluster.collect(_keeping(store, bar, jobs, study), wait=True)
     tell("done", 1.0)
+    return _result(study, jobs, store, modes)
+
+
+def _result(
+    study: Study, jobs: tuple[Job, ...], store: PieceStore, modes: Modes | None
+) -> StudyResult:
+    found: dict[CellKey, Cell] = {}
+    for job in jobs:
+        pieces = [store.load(name) for name in job.pieces]
+        for i, (road, factor) in enumerate(job.factors.items()):
+            key = CellKey(job.case.name, road, job.method.name)
+            found[key] = cell_of(key, i, factor, pieces)
     cells = {key: found[key] for key in _keys(study)}
     verdicts = {
         key: _assess(study, cell)
@@ -105,22 +129,71 @@ def run_study(study: Study, *, report: Report | None = None) -> StudyResult:
     return StudyResult(study=study, cells=cells, verdicts=verdicts, modes=modes)
 
 
+class _Floors:
+    """Prepare the floor for each method once, and hold one of them at a time."""
+
+    def __init__(self, floor: Floor, modes: Modes | None) -> None:
+        self._floor, self._modes = floor, modes
+        self._flexibility = StaticFlexibility(floor)
+        self._held: tuple[str, PreparedFloor] | None = None
+
+    def of(self, job: Job) -> PreparedFloor:
+        """Return the floor as a job's method needs it."""
+        name, interaction = job.method.name, job.method.interaction
+        if self._held is None or self._held[0] != name:
+            self._held = None  # lets go of the last one's factor first
+            prepared = prepare(
+                self._floor,
+                interaction.integration,
+                interaction.damping,
+                modes=self._modes,
+                flexibility=self._flexibility,
+            )
+            self._held = (name, prepared)
+        return self._held[1]
+
+
+class _Bar:
+    """Tell the share done, by what each part costs."""
+
+    def __init__(self, tell: Report, base: float, total: float) -> None:
+        self._tell, self._base, self._total, self._done = tell, base, total, 0.0
+        self.label = ""
+
+    def part(self, cost: float, share: float) -> None:
+        """Tell that a share of a part is done."""
+        done = (self._done + cost * share) / self._total
+        self._tell(self.label, self._base + (1.0 - self._base) * done)
+
+    def skip(self, cost: float) -> None:
+        """Count a part as done."""
+        self._done += cost
+
+
+def _keeping(
+    store: PieceStore, bar: _Bar, jobs: tuple[Job, ...], study: Study
+) -> Callable[[str, Piece], None]:
+    """Return what keeps a finished piece, and tells of it."""
+    costs = {
+        name: (f"{job.case.name}, {job.method.name}", cost)
+        for job in jobs
+        for name, cost in zip(job.pieces, job.costs(study.floor.n_dofs), strict=True)
+    }
+
+    def keep(name: str, piece: Piece) -> None:
+        store.save(name, piece)
+        bar.label, cost = costs[name]
+        bar.skip(cost)
+        bar.part(0.0, 0.0)
+
+    return keep
+
+
 def _keys(study: Study) -> Iterator[CellKey]:
     for method in study.methods:
         for case in study.cases:
             for road in study.roads:
                 yield CellKey(case.name, road, method.name)
-
-
-def _part_of_bar(tell: Report, label: str, start: float, length: float) -> Callable[[float], None]:
-    return lambda share: tell(label, start + share * length)
-
-
-def _cost(study: Study, case: Case, method: MethodPlan) -> float:
-    """Return a figure proportional to the time that a case takes."""
-    integration = method.interaction.integration
-    size = 2.0 * integration.f_max**1.5 if isinstance(integration, Modal) else study.floor.n_dofs
-    return (0.5 + len(case.routes)) * size * study.duration / integration.dt
 
 
 def _all_modes(study: Study, tell: Report) -> Modes | None:

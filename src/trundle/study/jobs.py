@@ -1,0 +1,186 @@
+"""Cut a study into jobs, and jobs into parts that can be computed anywhere, in any order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from trundle.dynamics import Modal
+from trundle.response import exact_statistics, reduce_rougher
+from trundle.signals import Averaging
+from trundle.simulate import (
+    Crossing,
+    Layout,
+    PreparedFloor,
+    harmonics,
+    lay_out,
+    mean_response,
+    runs_with_mean,
+)
+from trundle.simulate.ensemble import runs_at_once
+from trundle.study.model import Case, MethodPlan, Study
+from trundle.study.pieces import Piece, exact_piece, runs_piece
+
+__all__ = ["Job", "compute", "lay_out_job", "plan_jobs"]
+
+Progress = Callable[[float], None]
+
+_WAVES = 200  # shared among the roads of a case: 400 runs' worth
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Job:
+    """Hold what shares a layout: one case by one method on roads of one waviness.
+
+    Roads of one waviness differ by a factor alone, and the system is linear; so they share one
+    ensemble, whose response without roughness is subtracted, scaled about, and added again.
+
+    Attributes
+    ----------
+    name : str
+        Name of the job, unique in the study and fit for a file.
+    case : Case
+        What drives.
+    method : MethodPlan
+        By what method.
+    crossings : tuple of Crossing
+        The crossings on the first of the roads.
+    factors : mapping of str to float
+        How many times rougher each road is than the first.
+    parts : tuple of range
+        Numbers of the runs of each part; the last part after them are the exact statistics.
+    n_waves : int
+        Waves of each road for exact statistics, 0 for none.
+    points : mapping of str to (x, y)
+        Where the response is read [m].
+    duration : float
+        Length of the record [s].
+    seed : int
+        Seed of all roads.
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule of band levels.
+    """
+
+    name: str
+    case: Case
+    method: MethodPlan
+    crossings: tuple[Crossing, ...]
+    factors: Mapping[str, float]
+    parts: tuple[range, ...]
+    n_waves: int
+    points: Mapping[str, tuple[float, float]]
+    duration: float
+    seed: int
+    averaging: Averaging
+
+    @property
+    def pieces(self) -> tuple[str, ...]:
+        """Names of what its parts leave, unique in the study."""
+        exact = (f"{self.name}-exact",) if self.n_waves else ()
+        return (*(f"{self.name}-runs{i:04d}" for i in range(len(self.parts))), *exact)
+
+    @property
+    def modal(self) -> bool:
+        """Whether the floor is stepped in its modes."""
+        return isinstance(self.method.interaction.integration, Modal)
+
+    def costs(self, floor_size: int) -> tuple[float, ...]:
+        """Return figures proportional to the time that each part takes."""
+        integration = self.method.interaction.integration
+        modal = isinstance(integration, Modal)
+        size = 0.02 * integration.f_max**1.5 if modal else 0.1 * floor_size
+        contacts = sum(crossing.vehicle.n_contacts for crossing in self.crossings)
+        step = (2.0 + contacts) * size * self.duration / integration.dt
+        waves = 2 * self.n_waves * len(self.crossings)
+        return tuple(step * (100 + n) for n in [*map(len, self.parts), *([waves] if waves else [])])
+
+
+def plan_jobs(study: Study) -> tuple[Job, ...]:
+    """Return the jobs of a study, in the order of its methods and cases."""
+    return tuple(
+        _job(study, (i, j, k), (case, method), roads)
+        for i, method in enumerate(study.methods)
+        for j, case in enumerate(study.cases)
+        for k, roads in enumerate(_groups(study))
+    )
+
+
+def _groups(study: Study) -> list[list[str]]:
+    """Return roads of one waviness together."""
+    groups: dict[float, list[str]] = {}
+    for name, road in study.roads.items():
+        groups.setdefault(road.waviness, []).append(name)
+    return list(groups.values())
+
+
+def _job(
+    study: Study, place: tuple[int, int, int], what: tuple[Case, MethodPlan], roads: list[str]
+) -> Job:
+    case, method = what
+    crossings = study.crossings(case, roads[0], method)
+    first = study.roads[roads[0]].roughness
+    size = runs_at_once(
+        crossings, method.interaction.integration.dt, study.duration, len(study.points)
+    )
+    n_parts = -(-study.runs // size)
+    edges = np.linspace(0, study.runs, n_parts + 1).astype(int)
+    modal = isinstance(method.interaction.integration, Modal)
+    return Job(
+        name="method{}-case{}-roads{}".format(*place),
+        case=case,
+        method=method,
+        crossings=crossings,
+        factors={name: float(np.sqrt(study.roads[name].roughness / first)) for name in roads},
+        parts=tuple(range(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)),
+        n_waves=max(2, _WAVES // len(crossings)) if modal else 0,
+        points=study.points,
+        duration=study.duration,
+        seed=study.seed,
+        averaging=study.assessment.averaging if study.assessment else "max_1s",
+    )
+
+
+def lay_out_job(job: Job, floor: PreparedFloor) -> Layout:
+    """Lay out what all parts of a job share."""
+    return lay_out(
+        floor,
+        job.crossings,
+        method=job.method.interaction,
+        points=job.points,
+        duration=job.duration,
+    )
+
+
+def compute(job: Job, layout: Layout, part: int, progress: Progress | None = None) -> Piece:
+    """Compute one part of a job; the same bits wherever and whenever.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    layout : Layout
+        Its layout.
+    part : int
+        Which of its pieces.
+    progress : callable, optional
+        Told the share done.
+    """
+    factors = list(job.factors.values())
+    if part < len(job.parts):
+        runs, mean = runs_with_mean(
+            layout, runs=job.parts[part], seed=job.seed, progress=_part(progress, 0.8)
+        )
+        reduced = reduce_rougher(runs, mean, factors, averaging=job.averaging)
+        history = runs.part(slice(0, 1)) if part == 0 else None
+        histories = [] if history is None else [history.rougher(mean, f) for f in factors]
+        return runs_piece(runs, reduced, histories)
+    mean = mean_response(layout)
+    answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
+    exact = exact_statistics(mean, answers, f_max=layout.f_max)
+    return exact_piece(exact, factors)
+
+
+def _part(progress: Progress | None, length: float) -> Progress | None:
+    return None if progress is None else lambda share: progress(length * share)

@@ -1,0 +1,158 @@
+"""Turn what the parts of a job leave into plain arrays and notes, and back into cells."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from trundle._typing import Array
+from trundle.errors import FitnessWarning
+from trundle.response import BandSpectra, ExactStatistics, Process, Reduced, join
+from trundle.simulate import Runs
+from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
+from trundle.study.cells import EXACT_SHARES, Cell, CellKey, History
+
+__all__ = ["Piece", "cell_of", "exact_piece", "runs_piece"]
+
+_RUNS = ("peak_acceleration", "peak_time", "rms_velocity", "peak_contact_force", "tension")
+_HISTORY = ("displacement", "velocity", "acceleration", "contact_forces")
+_PROCESS = ("variance", "rate_variance", "covariance", "turning")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Piece:
+    """Hold what one part of a job leaves.
+
+    Attributes
+    ----------
+    arrays : mapping of str to ndarray
+        Numbers; those of one road bear its place before a full stop.
+    notes : mapping of str
+        What can be written as JSON.
+    """
+
+    arrays: Mapping[str, Array]
+    notes: Mapping[str, Any]
+
+
+def runs_piece(runs: Runs, reduced: Sequence[Reduced], histories: Sequence[Runs]) -> Piece:
+    """Return what some runs leave on every road; `histories` hold the first run, or nothing."""
+    arrays: dict[str, Array] = {"time": runs.time, "mid_band": reduced[0].spectra.mid_band}
+    arrays["resolved"] = reduced[0].spectra.resolved
+    for i, kept in enumerate(reduced):
+        arrays |= {f"{i}.{name}": getattr(kept, name) for name in _RUNS}
+        arrays[f"{i}.band_levels"] = kept.spectra.values
+    for i, history in enumerate(histories):
+        arrays |= {f"{i}.history.{name}": getattr(history, name)[0] for name in _HISTORY}
+    notes = {
+        "averaging": reduced[0].spectra.averaging,
+        "point_names": list(runs.point_names),
+        "contact_names": list(runs.contact_names),
+        "top": min(runs.f_max, runs.sampling_frequency / 2.5),
+        "warnings": [[w.subject, w.message] for w in runs.warnings if w.subject != LOST_CONTACT],
+    }
+    return Piece(arrays=arrays, notes=notes)
+
+
+def exact_piece(exact: ExactStatistics, factors: Sequence[float]) -> Piece:
+    """Return exact statistics on the first road, and the peaks on every road."""
+    arrays: dict[str, Array] = {"time": exact.time, "mid_band": exact.mid_band}
+    arrays["resolved"] = exact.resolved
+    arrays |= {f"mean.{name}": value for name, value in exact.mean.items()}
+    arrays |= {f"variance.{name}": value for name, value in exact.variance.items()}
+    for quantity, process in exact.processes.items():
+        arrays |= {f"process.{quantity}.{name}": getattr(process, name) for name in _PROCESS}
+    arrays |= {"band_mean": exact.band_mean, "band_variance": exact.band_variance}
+    for i, factor in enumerate(factors):
+        arrays[f"{i}.peaks"] = exact.rougher(factor).peaks(EXACT_SHARES)
+    notes = {
+        "quadrature_error": exact.quadrature_error,
+        "n_waves": exact.n_waves,
+        "point_names": list(exact.point_names),
+    }
+    return Piece(arrays=arrays, notes=notes)
+
+
+def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> Cell:
+    """Put the pieces of a job together to the cell of one of its roads.
+
+    Parameters
+    ----------
+    key : CellKey
+        Which cell.
+    road : int
+        Place of the road in the job.
+    factor : float
+        How many times rougher it is than the job's first.
+    pieces : sequence of Piece
+        All pieces of the job, in their order.
+    """
+    sampled = [piece for piece in pieces if "averaging" in piece.notes]
+    exact = [piece for piece in pieces if "quadrature_error" in piece.notes]
+    first, notes = sampled[0].arrays, sampled[0].notes
+    runs = join([_reduced(piece, road) for piece in sampled])
+    pulling = contact_warnings(float(runs.tension.any(axis=1).mean()))
+    return Cell(
+        key=key,
+        peak_acceleration=runs.peak_acceleration,
+        rms_velocity=runs.rms_velocity,
+        spectra=runs.spectra,
+        peak_contact_force=runs.peak_contact_force,
+        contact_names=tuple(notes["contact_names"]),
+        tension_share=runs.tension.mean(axis=0),
+        exact=_exact(exact[0]).rougher(factor) if exact else None,
+        exact_peaks=exact[0].arrays[f"{road}.peaks"] if exact else None,
+        history=History(
+            time=first["time"], **{name: first[f"{road}.history.{name}"] for name in _HISTORY}
+        ),
+        top=float(notes["top"]),
+        warnings=(
+            *pulling,
+            *(FitnessWarning(subject=s, message=text) for s, text in notes["warnings"]),
+        ),
+    )
+
+
+def _reduced(piece: Piece, road: int) -> Reduced:
+    arrays = piece.arrays
+    return Reduced(
+        spectra=BandSpectra(
+            mid_band=arrays["mid_band"],
+            values=arrays[f"{road}.band_levels"],
+            resolved=arrays["resolved"],
+            averaging=piece.notes["averaging"],
+            point_names=tuple(piece.notes["point_names"]),
+        ),
+        **{name: arrays[f"{road}.{name}"] for name in _RUNS},
+    )
+
+
+def _exact(piece: Piece) -> ExactStatistics:
+    arrays = piece.arrays
+
+    def named(prefix: str) -> dict[str, Array]:
+        start = f"{prefix}."
+        return {n.removeprefix(start): v for n, v in arrays.items() if n.startswith(start)}
+
+    mean = named("mean")
+    return ExactStatistics(
+        time=arrays["time"],
+        mean=mean,
+        variance=named("variance"),
+        processes={
+            quantity: Process(
+                time=arrays["time"],
+                mean=mean[quantity],
+                **{name: arrays[f"process.{quantity}.{name}"] for name in _PROCESS},
+            )
+            for quantity in ("velocity", "acceleration")
+        },
+        mid_band=arrays["mid_band"],
+        resolved=arrays["resolved"],
+        band_mean=arrays["band_mean"],
+        band_variance=arrays["band_variance"],
+        quadrature_error=float(piece.notes["quadrature_error"]),
+        n_waves=int(piece.notes["n_waves"]),
+        point_names=tuple(piece.notes["point_names"]),
+    )

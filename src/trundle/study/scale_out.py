@@ -1,0 +1,151 @@
+"""Compute the parts of a study on the workers of a dask cluster."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
+from typing import Any
+
+from trundle.errors import ComputationError, InputError
+from trundle.simulate import Layout, PreparedFloor, prepare
+from trundle.structure import Floor
+from trundle.study.jobs import Job, compute, lay_out_job
+from trundle.study.pieces import Piece
+
+__all__ = ["Cluster", "cluster_at", "local_cluster"]
+
+_RETRIES = 3  # times that a part is tried again when its worker has died
+
+Done = Callable[[str, Piece], None]
+
+
+class Cluster:
+    """Send parts to workers, and hand over what they leave."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self._floor: Any = None
+        self._pending: dict[Any, str] = {}
+
+    def submit(self, job: Job, parts: Iterable[int], carrier: Layout | Floor) -> None:
+        """Send parts of a job; its layout, or its floor, travels once to each worker.
+
+        Parameters
+        ----------
+        job : Job
+            The job.
+        parts : iterable of int
+            Which of its parts.
+        carrier : Layout or Floor
+            Its layout, or the floor that a worker prepares for itself.
+        """
+        if isinstance(carrier, Layout):
+            sent = self._client.scatter(carrier, hash=False, broadcast=False)
+        else:
+            self._floor = self._floor or self._client.scatter(carrier, hash=False)
+            sent = self._floor
+        for part in parts:
+            name = job.pieces[part]
+            future = self._client.submit(
+                _compute, job, sent, part, key=f"{name}-{id(self)}", retries=_RETRIES, pure=False
+            )
+            self._pending[future] = name
+
+    def collect(self, done: Done, *, wait: bool) -> None:
+        """Hand over finished pieces: those there already, or all, as they come."""
+        distributed = _distributed()
+        ready = distributed.as_completed(list(self._pending)) if wait else list(self._pending)
+        for future in ready:
+            if wait or future.done():
+                name = self._pending.pop(future)
+                done(name, _result(future, name))
+                future.release()
+
+
+def _result(future: Any, name: str) -> Piece:
+    distributed = _distributed()
+    try:
+        return future.result()
+    except distributed.KilledWorker as error:
+        raise ComputationError(
+            f"the workers that computed {name} died {_RETRIES} times, most likely for want of "
+            "memory; use fewer workers"
+        ) from error
+    except distributed.CancelledError as error:
+        raise ComputationError(f"the cluster was lost while it computed {name}") from error
+
+
+_kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last floor it prepared
+
+
+def _compute(job: Job, carrier: Layout | Floor, part: int) -> Piece:
+    """Compute a part, in a worker."""
+    if isinstance(carrier, Layout):
+        return compute(job, carrier, part)
+    interaction = job.method.interaction
+    key = (carrier.content_hash, str(interaction))
+    if key not in _kept:
+        _kept.clear()
+        _kept[key] = prepare(carrier, interaction.integration, interaction.damping)
+    return compute(job, lay_out_job(job, _kept[key]), part)
+
+
+@contextmanager
+def local_cluster(n_workers: int) -> Generator[Cluster]:
+    """Start so many workers on this machine, listening on loopback alone.
+
+    Parameters
+    ----------
+    n_workers : int
+        Number of processes; they share the machine's processors.
+    """
+    distributed = _distributed()
+    threads = str(max(1, (os.cpu_count() or 1) // n_workers))
+    names = ("TRUNDLE_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+    with (
+        distributed.LocalCluster(
+            n_workers=n_workers,
+            threads_per_worker=1,
+            processes=True,
+            host="127.0.0.1",
+            dashboard_address=None,
+            silence_logs=logging.ERROR,
+            env=dict.fromkeys(names, threads),
+        ) as cluster,
+        distributed.Client(cluster) as client,
+    ):
+        yield Cluster(client)
+
+
+@contextmanager
+def cluster_at(address: str) -> Generator[Cluster]:
+    """Use the workers of a dask scheduler that runs already.
+
+    Parameters
+    ----------
+    address : str
+        Where it listens, as ``tcp://host:8786``.
+    """
+    distributed = _distributed()
+    try:
+        client = distributed.Client(address, timeout=10)
+    except (OSError, ValueError, TypeError) as error:
+        raise InputError(
+            f"--scheduler {address!r}: no dask scheduler answers there ({error}); "
+            "start one with 'dask scheduler', or use --workers"
+        ) from None
+    with client:
+        yield Cluster(client)
+
+
+def _distributed() -> Any:
+    """Import dask.distributed when it is asked for, and not before."""
+    try:
+        import distributed  # noqa: PLC0415 - an extra, and slow to import
+    except ImportError:
+        raise InputError(
+            "--workers and --scheduler need dask.distributed: pip install 'trundle[cluster]'"
+        ) from None
+    return distributed

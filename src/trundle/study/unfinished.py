@@ -1,0 +1,186 @@
+"""Keep the pieces of a study as they are finished, so that a run that is stopped can go on.
+
+Each piece is a group of a zarr store, written aside and renamed into place: after a kill at any
+moment a piece is there whole or not at all.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+from collections.abc import Generator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+import zarr
+
+from trundle import __version__
+from trundle.errors import InputError
+from trundle.study.model import Study
+from trundle.study.pieces import Piece
+
+__all__ = ["InMemory", "OnDisk", "PieceStore", "unfinished_folder", "unfinished_of"]
+
+_MARK = "trundle-unfinished.json"
+_FORMAT = 1  # of the pieces; another one starts anew
+
+
+@runtime_checkable
+class PieceStore(Protocol):
+    """Where finished pieces are kept."""
+
+    def has(self, name: str) -> bool:
+        """Return whether a piece is there."""
+        ...
+
+    def save(self, name: str, piece: Piece) -> None:
+        """Keep a piece."""
+        ...
+
+    def load(self, name: str) -> Piece:
+        """Return a piece that is there."""
+        ...
+
+
+class InMemory:
+    """Keep pieces for as long as this process lives."""
+
+    def __init__(self) -> None:
+        self._pieces: dict[str, Piece] = {}
+
+    def has(self, name: str) -> bool:
+        """Return whether a piece is there."""
+        return name in self._pieces
+
+    def save(self, name: str, piece: Piece) -> None:
+        """Keep a piece."""
+        self._pieces[name] = piece
+
+    def load(self, name: str) -> Piece:
+        """Return a piece that is there."""
+        return self._pieces[name]
+
+
+class OnDisk:
+    """Keep pieces in a folder, each whole or not at all."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._store = folder / "pieces.zarr"
+        zarr.open_group(self._store, mode="a", zarr_format=2)
+        for aside in self._store.glob(".writing-*"):
+            shutil.rmtree(aside, ignore_errors=True)
+        self.n_found = sum(1 for entry in self._store.iterdir() if entry.is_dir())
+
+    def has(self, name: str) -> bool:
+        """Return whether a piece is there."""
+        return (self._store / name).is_dir()
+
+    def save(self, name: str, piece: Piece) -> None:
+        """Write a piece aside, then rename it into place."""
+        aside = self._store / f".writing-{os.getpid()}-{name}"
+        group = zarr.open_group(aside, mode="w", zarr_format=2)
+        for key, values in piece.arrays.items():
+            group.create_array(key, data=np.ascontiguousarray(values))
+        group.attrs["notes"] = json.dumps(piece.notes)
+        with suppress(OSError):  # another process has finished the same piece meanwhile
+            os.rename(aside, self._store / name)
+        shutil.rmtree(aside, ignore_errors=True)
+
+    def load(self, name: str) -> Piece:
+        """Return a piece that is there."""
+        group = zarr.open_group(self._store / name, mode="r", zarr_format=2)
+        arrays = {key: np.asarray(array[...]) for key, array in group.arrays()}
+        return Piece(arrays=arrays, notes=json.loads(str(group.attrs["notes"])))
+
+
+def unfinished_folder(out: Path) -> Path:
+    """Return where the pieces of a run into a results folder are kept until it is done."""
+    out = out.absolute()
+    return out.with_name(f"{out.name}.unfinished")
+
+
+@contextmanager
+def unfinished_of(study: Study, out: Path, *, fresh: bool = False) -> Generator[OnDisk]:
+    """Open the pieces of a run, those of an earlier one of the same study if it was stopped.
+
+    When all goes well the folder is removed at the end; after an interrupt it stays.
+
+    Parameters
+    ----------
+    study : Study
+        What is run.
+    out : Path
+        Its results folder; the pieces stand beside it.
+    fresh : bool
+        Begin anew even if pieces are there.
+
+    Raises
+    ------
+    InputError
+        Another process works on the same results, or the folder is somebody else's.
+    """
+    folder = unfinished_folder(out)
+    mark = folder / _MARK
+    if folder.exists() and not mark.is_file() and (not folder.is_dir() or any(folder.iterdir())):
+        raise InputError(
+            f"{folder} is where unfinished results would stand, but trundle did not write it; "
+            "move it away, or choose another results folder with --out"
+        )
+    made = [parent for parent in folder.parents if not parent.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    with _locked(folder / "lock"):
+        fingerprint = _fingerprint(study)
+        if fresh or not mark.is_file() or mark.read_text("utf-8") != fingerprint:
+            shutil.rmtree(folder / "pieces.zarr", ignore_errors=True)
+            mark.write_text(fingerprint, "utf-8")
+        store = OnDisk(folder)
+        try:
+            yield store
+        except BaseException:
+            if not any(entry.is_dir() for entry in (folder / "pieces.zarr").iterdir()):
+                _remove(folder, made)
+            raise
+        _remove(folder, [])
+
+
+def _remove(folder: Path, made: list[Path]) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    for parent in made:
+        with suppress(OSError):
+            parent.rmdir()
+
+
+def _fingerprint(study: Study) -> str:
+    """Return all that decides the bits of a piece."""
+    values = {
+        "format": _FORMAT,
+        "version": __version__,
+        "numpy": np.__version__,
+        "study": hashlib.sha256(study.text.encode()).hexdigest(),
+        "floor": study.floor.content_hash,
+    }
+    return json.dumps(values, indent=1) + "\n"
+
+
+@contextmanager
+def _locked(file: Path) -> Generator[None]:
+    """Hold a lock that ends with this process, however that ends."""
+    try:
+        import fcntl  # noqa: PLC0415 - only where the system has it
+    except ImportError:
+        yield
+        return
+    with file.open("w") as opened:
+        try:
+            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise InputError(
+                f"another trundle is working on the same results ({file.parent}); "
+                "wait for it, or choose another folder with --out"
+            ) from None
+        yield

@@ -14,7 +14,7 @@ from threadpoolctl import ThreadpoolController
 
 import trundle as tr
 from trundle.simulate import Coupled, Crossing, Modal, lay_out, prepare
-from trundle.simulate._schedule import roads_under_wheels
+from trundle.simulate._roads import roads_under_wheels
 from trundle.simulate.ensemble import batch_size
 from trundle.study.mode_cache import modes_of
 

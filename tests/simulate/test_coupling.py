@@ -23,7 +23,8 @@ from trundle.simulate import (
     ensemble,
     prepare,
 )
-from trundle.simulate._schedule import operator_rows, roads_under_wheels, timeline_of
+from trundle.simulate._roads import _Source, roads_under_wheels
+from trundle.simulate._schedule import operator_rows, timeline_of
 from trundle.vehicle import articulated_truck_5_axle, container_truck_40ft, quarter_car
 
 DAMPING = Rayleigh(alpha=0.5, beta=0.001)
@@ -340,13 +341,11 @@ def test_same_seed_same_bits_and_more_runs_keep_the_first():
 
 def test_every_method_drives_over_the_same_road():
     """Entry, time step and companions do not change the road of a route and a run."""
-    from trundle.simulate._schedule import _profiles_of, run_generator
-
     heights = []
     for entry, dt in ((Ramp(length=1.0), 0.02), (DriveIn(length=3.0), 0.005)):
         way = crossing(entry=entry, run_in=7.3)
         timeline = timeline_of((way,), dt, 3.0)
-        (profile,) = _profiles_of(way, np.zeros(1), 8.0, timeline, run_generator(1, "way", 0))
+        (profile,) = _Source(way, slice(0, 1), timeline, seed=1)._profiles(0)
         heights.append(profile.at(np.linspace(-10.0, 20.0, 50))[0])
     np.testing.assert_allclose(heights[0], heights[1], rtol=1e-12)
 

@@ -26,12 +26,8 @@ from trundle.simulate import _march as march
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor
 from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._schedule import (
-    drawn_roads,
-    operator_rows,
-    roads_under_wheels,
-    timeline_of,
-)
+from trundle.simulate._roads import drawn_roads, roads_under_wheels
+from trundle.simulate._schedule import operator_rows, timeline_of
 from trundle.simulate.layout import _springs
 from trundle.vehicle import container_truck_40ft, quarter_car
 

@@ -128,15 +128,11 @@ class _Sums:
         self.fine[name] = self.fine.get(name, 0.0) + value
 
 
-def exact_statistics(
-    mean: MeanResponse, answers: Iterable[Harmonics], *, f_max: float = np.inf
-) -> ExactStatistics:
+def exact_statistics(answers: Iterable[Harmonics], *, f_max: float = np.inf) -> ExactStatistics:
     """Sum answers to all waves.
 
     Parameters
     ----------
-    mean : MeanResponse
-        Response to the static loads alone.
     answers : iterable of Harmonics
         Answers to the waves, some at a time.
     f_max : float
@@ -152,12 +148,17 @@ def exact_statistics(
     J. H. Lin, W. S. Zhang, F. W. Williams, Pseudo-excitation algorithm for nonstationary
     random seismic responses, Engineering Structures 16 (1994) 270-276.
     """
+    parts = iter(answers)
+    first = next(parts)
+    mean = first.mean
     fs = 1.0 / float(mean.time[1] - mean.time[0])
     mid_band = mid_band_frequencies()
     resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= f_max)
     filters = [band_filter(f, fs) for f in mid_band[resolved]]
     sums = _Sums()
-    for answer in answers:
+    _add(sums, first, filters)
+    del first
+    for answer in parts:
         _add(sums, answer, filters)
     still = np.moveaxis(mean.velocity, 0, -1)
     shape = (len(filters), *still.shape)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Float
@@ -134,14 +135,7 @@ def draw_spectrum(
     road: RoadClass, band: RoughnessBand, n_samples: int, step: float, rng: np.random.Generator
 ) -> tuple[Array, Array]:
     """Return the Fourier coefficients of one random road, and their waves [cycle/m]."""
-    resolution = 1.0 / (n_samples * step)
-    waves = resolution * np.arange(n_samples // 2 + 1)
-    low = np.clip(waves - 0.5 * resolution, band.n_min, band.n_max)
-    high = np.clip(waves + 0.5 * resolution, band.n_min, band.n_max)
-    power = band_power(road, low, high)
-    if not np.any(power > 0.0):
-        raise InputError(f"no wave between {band} fits on this road; make it longer")
-    amplitude = np.sqrt(2.0 * power) * np.abs(np.sinc(waves * band.contact_patch))
+    amplitude, waves = _amplitudes(road, band, n_samples, step)
     if band.gaussian_amplitudes:
         pair = rng.standard_normal((2, len(waves))) / np.sqrt(2.0)
         coefficient = amplitude * (pair[0] + 1j * pair[1])
@@ -151,6 +145,22 @@ def draw_spectrum(
     if n_samples % 2 == 0:
         coefficient[-1] = 0.0  # a wave at the sampling limit has no defined phase
     return 0.5 * n_samples * coefficient, waves
+
+
+@lru_cache(maxsize=16)  # an ensemble draws its roads from the same amplitudes
+def _amplitudes(
+    road: RoadClass, band: RoughnessBand, n_samples: int, step: float
+) -> tuple[Array, Array]:
+    resolution = 1.0 / (n_samples * step)
+    waves = resolution * np.arange(n_samples // 2 + 1)
+    low = np.clip(waves - 0.5 * resolution, band.n_min, band.n_max)
+    high = np.clip(waves + 0.5 * resolution, band.n_min, band.n_max)
+    power = band_power(road, low, high)
+    if not np.any(power > 0.0):
+        raise InputError(f"no wave between {band} fits on this road; make it longer")
+    amplitude = np.sqrt(2.0 * power) * np.abs(np.sinc(waves * band.contact_patch))
+    amplitude.flags.writeable = waves.flags.writeable = False
+    return amplitude, waves
 
 
 def wave_power(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from jaxtyping import Bool, Float
 from scipy import signal
@@ -74,6 +76,11 @@ def band_filter(mid_band: float, sampling_frequency: float) -> Float[Array, "sec
             f"the {nominal_frequency(mid_band):g} Hz band needs a sampling frequency of at least "
             f"{_SAMPLES * mid_band:g} Hz; got {fs:g} Hz"
         )
+    return _sections(float(mid_band), fs).copy()
+
+
+@lru_cache(maxsize=256)  # designing takes longer than filtering a short record
+def _sections(mid_band: float, fs: float) -> Float[Array, "sections 6"]:
     edges = band_edges(np.array([mid_band]))[0]
     return signal.butter(_ORDER, edges, btype="bandpass", fs=fs, output="sos")
 

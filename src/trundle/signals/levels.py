@@ -35,9 +35,14 @@ def running_rms(
     averages over the window, not the record.
     """
     width = max(1, round(positive("window", window) * sampling_frequency))
+    return np.sqrt(_energy(samples, width) / width)
+
+
+def _energy(samples: Array, width: int) -> Array:
+    """Return the sum of squares over the window that ends at each sample."""
     energy = np.cumsum(samples**2, axis=-1)
     energy[..., width:] = energy[..., width:] - energy[..., :-width]
-    return np.sqrt(np.maximum(energy, 0.0) / width)
+    return np.maximum(energy, 0.0, out=energy)
 
 
 def averaged_rms(
@@ -58,7 +63,8 @@ def averaged_rms(
     if averaging == "event":
         return np.sqrt(np.mean(samples**2, axis=-1))
     if averaging == "max_1s":
-        return running_rms(samples, sampling_frequency).max(axis=-1)
+        width = max(1, round(_WINDOW * sampling_frequency))
+        return np.sqrt(_energy(samples, width).max(axis=-1) / width)
     decay = np.exp(-1.0 / (_TIME_CONSTANT[averaging] * sampling_frequency))
     weighted = signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1)
     return np.sqrt(weighted.max(axis=-1))

@@ -20,7 +20,8 @@ from trundle.simulate._blocks import Block, contact_block, load_block
 from trundle.simulate._march import Progress, Record, Springs
 from trundle.simulate._modal_floor import ModalFloor
 from trundle.simulate._powers import FloorPowers, VehiclePowers
-from trundle.simulate._schedule import RoadUnderWheels, Timeline
+from trundle.simulate._roads import RoadUnderWheels
+from trundle.simulate._schedule import Timeline
 
 __all__ = ["Steps", "drive_in_blocks"]
 
@@ -79,6 +80,7 @@ def drive_in_blocks(
     progress : callable, optional
         Told the share of steps done.
     """
+    floor = None if floor is None else floor.for_one_drive()
     with ThreadPoolExecutor(n_threads()) as pool:
         march = _March(steps, road, weight, pool)
         if static:

@@ -13,7 +13,8 @@ from trundle._typing import Array
 from trundle.dynamics import Motion, Propagator, State
 from trundle.errors import UnstableStepError
 from trundle.simulate._floors import ContactFloor, RigidGround
-from trundle.simulate._schedule import RoadUnderWheels, Timeline
+from trundle.simulate._roads import RoadUnderWheels
+from trundle.simulate._schedule import Timeline
 
 __all__ = [
     "ContactLaw",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
@@ -50,6 +52,12 @@ class ModalFloor:
         self._residual = (
             None if flexibility is None else _Residual(rows, self._n, modes, flexibility)
         )
+
+    def for_one_drive(self) -> ModalFloor:
+        """Return the floor with room of its own for shapes; two drives at once do not share it."""
+        own = copy(self)
+        own._chunks = {}
+        return own
 
     def shapes(self, start: int, stop: int) -> tuple[Array, Array]:
         """Return mode shapes and slopes under the wheels, (n_steps, n_contacts, n_modes)."""
@@ -102,6 +110,7 @@ class ModalFloor:
         starts = np.arange(0, at.size + 1, at.shape[1])
         shape = (len(at), len(self._route_shapes))
         matrix = sparse.csr_array((weights.ravel(), at.ravel(), starts), shape=shape)
+        matrix.eliminate_zeros()  # wheels that are not on the floor
         both = (matrix @ self._route_shapes).reshape(2, -1, self._n, self.n_modes)
         return both[0], both[1]
 

@@ -97,11 +97,17 @@ def residual_block(
 
 
 def point_residual(
-    flexibility: StaticFlexibility, modes: Modes, points: SparseMatrix
-) -> Float[Array, "points dofs"]:
-    """Return the rows of R that give the response at points [m/N]."""
+    flexibility: StaticFlexibility, modes: Modes, points: SparseMatrix, dofs: Int[Array, " dofs"]
+) -> Float[Array, "points all"]:
+    """Return the rows of R that give the response at points to forces at some dofs [m/N].
+
+    Columns of other dofs are zero: no force reaches them.
+    """
     exact = flexibility.solve(np.ascontiguousarray(points.T.toarray())).T
-    return exact - ((points @ modes.shapes) / modes.omega**2) @ modes.shapes.T
+    out = np.zeros_like(exact)
+    modal = ((points @ modes.shapes) / modes.omega**2) @ modes.shapes[dofs].T
+    out[:, dofs] = exact[:, dofs] - modal
+    return out
 
 
 def add_residual_motion(

@@ -9,7 +9,8 @@ import numpy as np
 from trundle._checks import count
 from trundle._typing import Array
 from trundle.simulate._march import Record
-from trundle.simulate._schedule import Timeline, roads_under_wheels, timeline_of
+from trundle.simulate._roads import roads_under_wheels
+from trundle.simulate._schedule import Timeline, timeline_of
 from trundle.simulate.crossing import Crossing, Integration, Interaction
 from trundle.simulate.fitness import contact_warnings
 from trundle.simulate.layout import Layout, lay_out, lay_out_on_rigid_ground

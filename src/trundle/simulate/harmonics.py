@@ -18,12 +18,8 @@ from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.errors import InputError
 from trundle.road import RoadClass, RoughnessBand, track_coherence, wave_power
-from trundle.simulate._schedule import (
-    RoadUnderWheels,
-    columns_of,
-    contact_springs,
-    roads_under_wheels,
-)
+from trundle.simulate._roads import RoadUnderWheels, roads_under_wheels
+from trundle.simulate._schedule import columns_of, contact_springs
 from trundle.simulate.crossing import Crossing
 from trundle.simulate.ensemble import batch_size, mean_of, part_of
 from trundle.simulate.layout import Layout
@@ -69,6 +65,8 @@ class Harmonics:
         Response at the points for each metre of amplitude.
     contact_forces : ndarray of complex, shape (n_waves, n_steps, n_contacts)
         Dynamic forces under the wheels [N/m].
+    mean : MeanResponse
+        Response to the static loads alone, computed beside them.
     """
 
     time: Float[Array, " steps"]
@@ -79,6 +77,7 @@ class Harmonics:
     velocity: Complex[Array, "waves steps points"]
     acceleration: Complex[Array, "waves steps points"]
     contact_forces: Complex[Array, "waves steps contacts"]
+    mean: MeanResponse
 
 
 def place_waves(
@@ -235,23 +234,30 @@ def _mixing(n: Array, distance: Array) -> Array:
 
 
 def _wave_road(layout: Layout, sets: list[_WaveSet]) -> RoadUnderWheels:
-    """Return unit waves under the wheels: all cosines first, then all sines."""
+    """Return unit waves under the wheels: all cosines, then all sines, then no random road."""
     timeline = layout.timeline
     total = sum(len(part.n) for part in sets)
-    shape = (*timeline.station.shape, 2 * total)
+    smooth = roads_under_wheels(layout.crossings, timeline, range(0), 0, smooth=1)
+    shape = (*timeline.station.shape, 2 * total + 1)
     road = RoadUnderWheels(push=np.zeros(shape), start=np.zeros(shape[1:]))
+    road.push[..., -1], road.start[..., -1] = smooth.push[..., 0], smooth.start[..., 0]
     stiffness, damping = contact_springs(layout.crossings)
     at = 0
     for part in sets:
         cosine = slice(at, at + len(part.n))
         sine = slice(total + cosine.start, total + cosine.stop)
-        angle = 2.0 * np.pi * timeline.station[:, part.columns, None] * part.n
-        turning = 2.0 * np.pi * timeline.speed[:, part.columns, None] * part.n
-        k, c = (values[part.columns, None] for values in (stiffness, damping))
-        felt = part.share.T * (k + 1j * c * turning) * np.exp(1j * angle)
-        for place, take in ((cosine, np.real), (sine, np.imag)):
-            road.push[:, part.columns, place] = take(felt)
-            road.start[part.columns, place] = part.share.T * take(np.exp(1j * angle[0]))
+        wavenumber = 2.0 * np.pi * part.n
+        front = timeline.station[:, part.columns.start]
+        rolling = np.exp(1j * front[:, None] * wavenumber)
+        for i in range(part.columns.start, part.columns.stop):
+            # every wheel of a vehicle follows its first at a fixed distance
+            behind = np.exp(1j * (timeline.station[0, i] - front[0]) * wavenumber)
+            unit = rolling * (part.share[:, i - part.columns.start] * behind)
+            turning = timeline.speed[:, i, None] * wavenumber
+            felt = (stiffness[i] + 1j * damping[i] * turning) * unit
+            for place, take in ((cosine, np.real), (sine, np.imag)):
+                road.push[:, i, place] = take(felt)
+                road.start[i, place] = take(unit[0])
         at = cosine.stop
     return road
 
@@ -259,7 +265,9 @@ def _wave_road(layout: Layout, sets: list[_WaveSet]) -> RoadUnderWheels:
 def _answers(layout: Layout, sets: list[_WaveSet], *, progress: Progress | None) -> Harmonics:
     road = _wave_road(layout, sets)
     weight = np.zeros(road.n_runs)
-    record = layout.over(road, weight=weight, progress=progress)
+    weight[-1] = 1.0
+    everything = layout.over(road, weight=weight, progress=progress)
+    record = everything.columns(slice(0, -1))
     station = layout.timeline.station[layout.timeline.n_run_in :]
     phases = [2.0 * np.pi * part.n[:, None] * station[:, part.columns.start] for part in sets]
     return Harmonics(
@@ -271,6 +279,7 @@ def _answers(layout: Layout, sets: list[_WaveSet], *, progress: Progress | None)
         velocity=_complex(record.velocity),
         acceleration=_complex(record.acceleration),
         contact_forces=_complex(record.forces),
+        mean=mean_of(layout, everything),
     )
 
 

@@ -38,12 +38,8 @@ from trundle.simulate._march import (
 )
 from trundle.simulate._modal_floor import ModalFloor
 from trundle.simulate._residual import add_residual_motion, point_residual
-from trundle.simulate._schedule import (
-    RoadUnderWheels,
-    Timeline,
-    operator_rows,
-    timeline_of,
-)
+from trundle.simulate._roads import RoadUnderWheels
+from trundle.simulate._schedule import Timeline, operator_rows, timeline_of
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.fitness import fitness_warnings
 from trundle.simulate.prepared import PreparedFloor, prepare
@@ -224,7 +220,7 @@ def lay_out(
     coupled = isinstance(method, Coupled)
     residual = None
     if floor.modes is not None and floor.residual:
-        residual = (rows, point_residual(floor.flexibility, floor.modes, reader))
+        residual = (rows, point_residual(floor.flexibility, floor.modes, reader, rows.used_dofs()))
     return Layout(
         crossings=many,
         method=method,

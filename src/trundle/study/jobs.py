@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -16,7 +17,6 @@ from trundle.simulate import (
     PreparedFloor,
     harmonics,
     lay_out,
-    mean_response,
     runs_with_mean,
 )
 from trundle.simulate.ensemble import runs_at_once
@@ -133,7 +133,7 @@ def _job(
         method=method,
         crossings=crossings,
         factors={name: float(np.sqrt(study.roads[name].roughness / first)) for name in roads},
-        parts=tuple(range(a, b) for a, b in zip(edges[:-1], edges[1:], strict=True)),
+        parts=tuple(range(a, b) for a, b in itertools.pairwise(edges)),
         n_waves=max(2, _WAVES // len(crossings)) if modal else 0,
         points=study.points,
         duration=study.duration,
@@ -176,9 +176,8 @@ def compute(job: Job, layout: Layout, part: int, progress: Progress | None = Non
         history = runs.part(slice(0, 1)) if part == 0 else None
         histories = [] if history is None else [history.rougher(mean, f) for f in factors]
         return runs_piece(runs, reduced, histories)
-    mean = mean_response(layout)
     answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
-    exact = exact_statistics(mean, answers, f_max=layout.f_max)
+    exact = exact_statistics(answers, f_max=layout.f_max)
     return exact_piece(exact, factors)
 
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 
 from trundle.criteria import Verdict, assess_spectra
 from trundle.dynamics import Modal, Modes
@@ -12,17 +11,16 @@ from trundle.errors import FitnessWarning
 from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
 from trundle.structure import Floor
 from trundle.study.cells import Cell, CellKey
-from trundle.study.jobs import Job, compute, lay_out_job, plan_jobs
+from trundle.study.in_threads import compute_here
+from trundle.study.jobs import Job, lay_out_job, plan_jobs
 from trundle.study.mode_cache import modes_of
 from trundle.study.model import Study
 from trundle.study.pieces import Piece, cell_of
+from trundle.study.progress import Bar, Report
 from trundle.study.scale_out import Cluster
 from trundle.study.unfinished import InMemory, PieceStore
 
 __all__ = ["StudyResult", "run_study"]
-
-Report = Callable[[str, float], None]
-"""Told what is being done, and the share of the whole study that is done (0 to 1)."""
 
 _MODES_SHARE = 0.45  # of a study's time, as a first guess for the bar
 
@@ -86,27 +84,33 @@ def run_study(
     jobs = plan_jobs(study)
     modes = _all_modes(study, tell)
     base = _MODES_SHARE if modes is not None else 0.0
-    bar = _Bar(tell, base, sum(sum(job.costs(study.floor.n_dofs)) for job in jobs))
+    bar = Bar(tell, base, jobs, study.floor.n_dofs)
     floors = _Floors(study.floor, modes)
-    for job in jobs:
-        costs = job.costs(study.floor.n_dofs)
-        missing = [i for i, name in enumerate(job.pieces) if not store.has(name)]
-        bar.skip(sum(cost for i, cost in enumerate(costs) if i not in missing))
-        if not missing:
-            continue
-        bar.label = f"{job.case.name}, {job.method.name}"
-        bar.part(0.0, 0.0)
-        if cluster is not None:
-            carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
-            cluster.submit(job, missing, carrier)
-            cluster.collect(_keeping(store, bar, jobs, study), wait=False)
-            continue
-        layout = lay_out_job(job, floors.of(job))
-        for i in missing:
-            store.save(job.pieces[i], compute(job, layout, i, partial(bar.part, costs[i])))
-            bar.skip(costs[i])
-    if cluster is not None:
-        cluster.collect(_keeping(store, bar, jobs, study), wait=True)
+    missing = {job: [i for i, name in enumerate(job.pieces) if not store.has(name)] for job in jobs}
+    bar.finished(
+        job.pieces[i] for job in jobs for i in range(len(job.pieces)) if i not in missing[job]
+    )
+
+    def keep(name: str, piece: Piece) -> None:
+        store.save(name, piece)
+        bar.finished([name])
+
+    if cluster is None:
+        compute_here(
+            missing,
+            lambda job: lay_out_job(job, floors.of(job)),
+            begin=bar.begin,
+            progress=bar.part,
+            done=keep,
+        )
+    else:
+        for job, parts in missing.items():
+            if parts:
+                bar.begin(job)
+                carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
+                cluster.submit(job, parts, carrier)
+                cluster.collect(keep, wait=False)
+        cluster.collect(keep, wait=True)
     tell("done", 1.0)
     return _result(study, jobs, store, modes)
 
@@ -151,42 +155,6 @@ class _Floors:
             )
             self._held = (name, prepared)
         return self._held[1]
-
-
-class _Bar:
-    """Tell the share done, by what each part costs."""
-
-    def __init__(self, tell: Report, base: float, total: float) -> None:
-        self._tell, self._base, self._total, self._done = tell, base, total, 0.0
-        self.label = ""
-
-    def part(self, cost: float, share: float) -> None:
-        """Tell that a share of a part is done."""
-        done = (self._done + cost * share) / self._total
-        self._tell(self.label, self._base + (1.0 - self._base) * done)
-
-    def skip(self, cost: float) -> None:
-        """Count a part as done."""
-        self._done += cost
-
-
-def _keeping(
-    store: PieceStore, bar: _Bar, jobs: tuple[Job, ...], study: Study
-) -> Callable[[str, Piece], None]:
-    """Return what keeps a finished piece, and tells of it."""
-    costs = {
-        name: (f"{job.case.name}, {job.method.name}", cost)
-        for job in jobs
-        for name, cost in zip(job.pieces, job.costs(study.floor.n_dofs), strict=True)
-    }
-
-    def keep(name: str, piece: Piece) -> None:
-        store.save(name, piece)
-        bar.label, cost = costs[name]
-        bar.skip(cost)
-        bar.part(0.0, 0.0)
-
-    return keep
 
 
 def _keys(study: Study) -> Iterator[CellKey]:

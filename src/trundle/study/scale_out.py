@@ -24,7 +24,7 @@ Done = Callable[[str, Piece], None]
 class Cluster:
     """Send parts to workers, and hand over what they leave."""
 
-    def __init__(self, client: Any) -> None:
+    def __init__(self, client: Any) -> None:  # noqa: ANN401 - dask has no types
         self._client = client
         self._floor: Any = None
         self._pending: dict[Any, str] = {}
@@ -64,7 +64,7 @@ class Cluster:
                 future.release()
 
 
-def _result(future: Any, name: str) -> Piece:
+def _result(future: Any, name: str) -> Piece:  # noqa: ANN401
     distributed = _distributed()
     try:
         return future.result()
@@ -140,7 +140,7 @@ def cluster_at(address: str) -> Generator[Cluster]:
         yield Cluster(client)
 
 
-def _distributed() -> Any:
+def _distributed() -> Any:  # noqa: ANN401
     """Import dask.distributed when it is asked for, and not before."""
     try:
         import distributed  # noqa: PLC0415 - an extra, and slow to import

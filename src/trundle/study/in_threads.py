@@ -1,0 +1,79 @@
+"""Compute the parts of a study in threads of this process."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+
+from threadpoolctl import threadpool_limits
+
+from trundle._threads import n_threads
+from trundle.simulate import Layout
+from trundle.study.jobs import Job, compute
+from trundle.study.pieces import Piece
+
+__all__ = ["compute_here"]
+
+_AT_ONCE = 2  # while one part draws its roads or is filtered, another keeps the processors busy
+
+
+class _StoppedError(Exception):
+    """Ends a part whose result nobody waits for any more."""
+
+
+def compute_here(
+    missing: Mapping[Job, list[int]],
+    lay_out: Callable[[Job], Layout],
+    *,
+    begin: Callable[[Job], None],
+    progress: Callable[[str, float], None],
+    done: Callable[[str, Piece], None],
+) -> None:
+    """Compute parts, some at once, and hand over what each leaves.
+
+    Parameters
+    ----------
+    missing : mapping of Job to list of int
+        Which parts of each job.
+    lay_out : callable
+        Lays out a job, when its turn has come.
+    begin : callable
+        Told which job is begun.
+    progress : callable
+        Told the share of a piece that is done; from any thread.
+    done : callable
+        Given the name of a piece, and the piece; in the calling thread.
+    """
+    stop = threading.Event()
+    running: dict[Future[Piece], str] = {}
+
+    def collect(at_most: int) -> None:
+        while len(running) > at_most:
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                done(running.pop(future), future.result())
+
+    def run(job: Job, layout: Layout, part: int) -> Piece:
+        def tell(share: float) -> None:
+            if stop.is_set():
+                raise _StoppedError
+            progress(job.pieces[part], share)
+
+        return compute(job, layout, part, tell)
+
+    at_once = min(_AT_ONCE, n_threads())
+    # One limit around all: parts that set their own would undo each other's.
+    with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(at_once) as pool:
+        try:
+            for job, parts in missing.items():
+                if not parts:
+                    continue
+                begin(job)
+                layout = lay_out(job)
+                for part in parts:
+                    running[pool.submit(run, job, layout, part)] = job.pieces[part]
+                    collect(at_once)
+            collect(0)
+        except BaseException:
+            stop.set()
+            raise

@@ -43,7 +43,7 @@ def run(path: Path, out: Path, *, workers: int | None, scheduler: str | None, fr
         unfinished_of(study, out, fresh=fresh) as store,
         _cluster(workers, scheduler) as cluster,
         progress_bar() as tell,
-        new_results_folder(out) as folder,
+        new_results_folder(out, within=store.folder) as folder,
     ):
         if store.n_found:
             tell(f"going on from {store.n_found} finished pieces of an earlier run", 0.0)

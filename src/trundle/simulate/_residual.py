@@ -25,6 +25,8 @@ from trundle._threads import n_threads
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, factorise
 from trundle.route import ContactRows
+from trundle.simulate._schedule import route_dofs
+from trundle.simulate.crossing import Crossing
 from trundle.structure import Floor
 
 __all__ = [
@@ -51,7 +53,12 @@ def unit_loads(
 
 
 class StaticFlexibility:
-    """Answer for a floor's static flexibility, solving for each dof once."""
+    """Answer for a floor's static flexibility.
+
+    What is asked for depends on the question and on what was covered alone, not on earlier
+    questions: solutions of several right-hand sides at once differ in their last bits by which
+    ones stand together.
+    """
 
     def __init__(self, floor: Floor) -> None:
         self._floor = floor
@@ -59,27 +66,27 @@ class StaticFlexibility:
         self._dofs = np.zeros(0, dtype=np.intp)
         self._block = np.zeros((0, 0))
 
-    def cover(self, dofs: Int[Array, " dofs"]) -> None:
-        """Solve for those of these dofs that were not asked for before."""
-        new = np.setdiff1d(dofs, self._dofs)
-        if new.size == 0:
-            return
-        union = np.union1d(new, self._dofs)
-        block = np.empty((len(union), len(union)))
-        old_at, new_at = np.searchsorted(union, self._dofs), np.searchsorted(union, new)
-        block[np.ix_(old_at, old_at)] = self._block
-        for part, unit in unit_loads(new, self._floor.n_dofs):
-            solved = self.solve(unit)[union]
-            at = new_at[part]
-            block[:, at] = solved
-            block[at] = solved.T
-        self._dofs, self._block = union, block
+    def cover(self, crossings: tuple[Crossing, ...]) -> None:
+        """Solve for all dofs of some routes, that several layouts will ask about."""
+        self._dofs = route_dofs(self._floor, crossings)
+        self._block = self._between(self._dofs, self._dofs)
 
     def block(self, dofs: Int[Array, " dofs"]) -> Float[Array, "dofs dofs"]:
-        """Return the part of K^-1 between some dofs [m/N]."""
-        self.cover(dofs)
-        at = np.searchsorted(self._dofs, dofs)
-        return self._block[np.ix_(at, at)]
+        """Return the part of K^-1 between some dofs, rising [m/N]."""
+        known = np.isin(dofs, self._dofs)
+        out = np.empty((len(dofs), len(dofs)))
+        at, place = np.searchsorted(self._dofs, dofs[known]), np.flatnonzero(known)
+        out[np.ix_(place, place)] = self._block[np.ix_(at, at)]
+        if not known.all():
+            new = self._between(dofs, dofs[~known])
+            out[:, ~known], out[~known] = new, new.T
+        return out
+
+    def _between(self, rows: Array, columns: Array) -> Array:
+        out = np.empty((len(rows), len(columns)))
+        for part, unit in unit_loads(columns, self._floor.n_dofs):
+            out[:, part] = self.solve(unit)[rows]
+        return out
 
     def solve(self, load: Float[Array, "all columns"]) -> Float[Array, "all columns"]:
         """Return the static deflections under loads."""

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.route import ContactRows, ContactShape, StaticStart, contact_rows, deck_of
+from trundle.route import ContactRows, ContactShape, Hermite, StaticStart, contact_rows, deck_of
 from trundle.simulate.crossing import Crossing
 from trundle.structure import Floor
 
@@ -19,6 +19,7 @@ __all__ = [
     "columns_of",
     "contact_springs",
     "operator_rows",
+    "route_dofs",
     "timeline_of",
 ]
 
@@ -93,6 +94,18 @@ def contact_springs(crossings: tuple[Crossing, ...]) -> tuple[Array, Array]:
         np.concatenate([vehicle.contact_stiffness for vehicle in vehicles]),
         np.concatenate([vehicle.contact_damping for vehicle in vehicles]),
     )
+
+
+def route_dofs(floor: Floor, crossings: tuple[Crossing, ...]) -> Int[Array, " dofs"]:
+    """Return the dofs that wheels load on their way over a floor, rising."""
+    deck, found = deck_of(floor), []
+    for crossing in crossings:
+        station = np.linspace(0.0, crossing.route.length, 50 * int(crossing.route.length) + 2)
+        for lateral in np.unique(crossing.vehicle.lateral):
+            places, directions = crossing.route.locate(station, lateral)
+            rows = contact_rows(floor, places, directions, shape=Hermite(), deck=deck)
+            found.append(rows.used_dofs())
+    return np.unique(np.concatenate(found))
 
 
 def operator_rows(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 
 from threadpoolctl import threadpool_limits
 
@@ -61,19 +61,24 @@ def compute_here(
 
         return compute(job, layout, part, tell)
 
-    at_once = min(_AT_ONCE, n_threads())
-    # One limit around all: parts that set their own would undo each other's.
-    with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(at_once) as pool:
+    def carry_out(jobs: list[Job], pool: Executor, at_once: int) -> None:
         try:
-            for job, parts in missing.items():
-                if not parts:
-                    continue
+            for job in jobs:
                 begin(job)
                 layout = lay_out(job)
-                for part in parts:
+                for part in missing[job]:
                     running[pool.submit(run, job, layout, part)] = job.pieces[part]
                     collect(at_once)
             collect(0)
         except BaseException:
             stop.set()
             raise
+
+    at_once = min(_AT_ONCE, n_threads())
+    wanted = [job for job, parts in missing.items() if parts]
+    # One limit around all: parts that set their own would undo each other's.
+    with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(at_once) as pool:
+        carry_out([job for job in wanted if job.modal], pool, at_once)
+    # A sparse solver answers one caller at a time, and has threads of its own.
+    with ThreadPoolExecutor(1) as pool:
+        carry_out([job for job in wanted if not job.modal], pool, 0)

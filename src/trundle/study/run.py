@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from trundle.criteria import Verdict, assess_spectra
 from trundle.dynamics import Modal, Modes
 from trundle.errors import FitnessWarning
-from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
+from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
 from trundle.structure import Floor
 from trundle.study.cells import Cell, CellKey
 from trundle.study.in_threads import compute_here
@@ -85,7 +85,7 @@ def run_study(
     modes = _all_modes(study, tell)
     base = _MODES_SHARE if modes is not None else 0.0
     bar = Bar(tell, base, jobs, study.floor.n_dofs)
-    floors = _Floors(study.floor, modes)
+    floors = _Floors(study.floor, modes, jobs)
     missing = {job: [i for i, name in enumerate(job.pieces) if not store.has(name)] for job in jobs}
     bar.finished(
         job.pieces[i] for job in jobs for i in range(len(job.pieces)) if i not in missing[job]
@@ -136,14 +136,20 @@ def _result(
 class _Floors:
     """Prepare the floor for each method once, and hold one of them at a time."""
 
-    def __init__(self, floor: Floor, modes: Modes | None) -> None:
+    def __init__(self, floor: Floor, modes: Modes | None, jobs: tuple[Job, ...]) -> None:
         self._floor, self._modes = floor, modes
         self._flexibility = StaticFlexibility(floor)
+        # All routes, whatever is missing: a resumed run must solve for the same things together.
+        coupled = [job for job in jobs if job.modal and isinstance(job.method.interaction, Coupled)]
+        self._routes = {crossing.route: crossing for job in coupled for crossing in job.crossings}
         self._held: tuple[str, PreparedFloor] | None = None
 
     def of(self, job: Job) -> PreparedFloor:
         """Return the floor as a job's method needs it."""
         name, interaction = job.method.name, job.method.interaction
+        if self._routes:
+            self._flexibility.cover(tuple(self._routes.values()))
+            self._routes = {}
         if self._held is None or self._held[0] != name:
             self._held = None  # lets go of the last one's factor first
             prepared = prepare(

@@ -6,6 +6,7 @@ import logging
 import os
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Any
 
 from trundle.errors import ComputationError, InputError
@@ -26,8 +27,8 @@ class Cluster:
 
     def __init__(self, client: Any) -> None:  # noqa: ANN401 - dask has no types
         self._client = client
-        self._floor: Any = None
-        self._pending: dict[Any, str] = {}
+        self._sent: dict[int, Any] = {}  # by the identity of what was sent
+        self._pending: dict[Any, _Sent] = {}
 
     def submit(self, job: Job, parts: Iterable[int], carrier: Layout | Floor) -> None:
         """Send parts of a job; its layout, or its floor, travels once to each worker.
@@ -41,40 +42,71 @@ class Cluster:
         carrier : Layout or Floor
             Its layout, or the floor that a worker prepares for itself.
         """
-        if isinstance(carrier, Layout):
-            sent = self._client.scatter(carrier, hash=False, broadcast=False)
-        else:
-            self._floor = self._floor or self._client.scatter(carrier, hash=False)
-            sent = self._floor
         for part in parts:
-            name = job.pieces[part]
-            future = self._client.submit(
-                _compute, job, sent, part, key=f"{name}-{id(self)}", retries=_RETRIES, pure=False
-            )
-            self._pending[future] = name
+            self._send(_Sent(job=job, part=part, carrier=carrier, tries=1))
+
+    def _send(self, what: _Sent) -> None:
+        place = id(what.carrier)
+        if place not in self._sent:
+            self._sent[place] = self._client.scatter(what.carrier, hash=False)
+        future = self._client.submit(
+            _compute,
+            what.job,
+            self._sent[place],
+            what.part,
+            key=f"{what.name}-{what.tries}",
+            retries=_RETRIES,
+            pure=False,
+        )
+        self._pending[future] = what
 
     def collect(self, done: Done, *, wait: bool) -> None:
         """Hand over finished pieces: those there already, or all, as they come."""
         distributed = _distributed()
-        ready = distributed.as_completed(list(self._pending)) if wait else list(self._pending)
-        for future in ready:
-            if wait or future.done():
-                name = self._pending.pop(future)
-                done(name, _result(future, name))
-                future.release()
+        while self._pending:
+            if wait:
+                distributed.wait(list(self._pending), return_when="FIRST_COMPLETED")
+            ready = [future for future in self._pending if future.done()]
+            for future in ready:
+                self._take(future, done)
+            if not wait:
+                return
+
+    def _take(self, future: Any, done: Done) -> None:  # noqa: ANN401
+        """Hand over a part's piece, or send the part again if what it needs died with a worker."""
+        distributed = _distributed()
+        what = self._pending.pop(future)
+        try:
+            done(what.name, future.result())
+        except distributed.CancelledError as error:
+            if what.tries > _RETRIES:
+                raise ComputationError(
+                    f"the cluster was lost while it computed {what.name}"
+                ) from error
+            lost = self._sent.pop(id(what.carrier), None)
+            if lost is not None and lost.status == "finished":
+                self._sent[id(what.carrier)] = lost
+            self._send(replace(what, tries=what.tries + 1))
+        except distributed.KilledWorker as error:
+            raise ComputationError(
+                f"the workers that computed {what.name} died {_RETRIES} times, most likely for "
+                "want of memory; use fewer workers"
+            ) from error
+        future.release()
 
 
-def _result(future: Any, name: str) -> Piece:  # noqa: ANN401
-    distributed = _distributed()
-    try:
-        return future.result()
-    except distributed.KilledWorker as error:
-        raise ComputationError(
-            f"the workers that computed {name} died {_RETRIES} times, most likely for want of "
-            "memory; use fewer workers"
-        ) from error
-    except distributed.CancelledError as error:
-        raise ComputationError(f"the cluster was lost while it computed {name}") from error
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Sent:
+    """A part that workers were asked for."""
+
+    job: Job
+    part: int
+    carrier: Layout | Floor
+    tries: int
+
+    @property
+    def name(self) -> str:
+        return self.job.pieces[self.part]
 
 
 _kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last floor it prepared

@@ -97,8 +97,10 @@ def _nearest_folder(folder: Path) -> Path:
 
 
 @contextmanager
-def new_results_folder(folder: Path) -> Generator[Path]:
+def new_results_folder(folder: Path, *, within: Path | None = None) -> Generator[Path]:
     """Give a folder to fill; it takes its place only when all went well.
+
+    It is filled beside its place, or `within` a folder of the same file system.
 
     An earlier result of that name is replaced at the end; after an error or an interrupt it
     still stands, and the half-filled folder is gone.
@@ -106,7 +108,7 @@ def new_results_folder(folder: Path) -> Generator[Path]:
     folder = folder.absolute()
     made = [parent for parent in folder.parents if not parent.exists()]
     folder.parent.mkdir(parents=True, exist_ok=True)
-    aside = Path(tempfile.mkdtemp(dir=folder.parent, prefix=".trundle-"))
+    aside = Path(tempfile.mkdtemp(dir=within or folder.parent, prefix=".trundle-"))
     try:
         aside.chmod(0o755)
         yield aside

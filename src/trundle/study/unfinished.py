@@ -72,7 +72,8 @@ class OnDisk:
         self.folder = folder
         self._store = folder / "pieces.zarr"
         zarr.open_group(self._store, mode="a", zarr_format=2)
-        for aside in self._store.glob(".writing-*"):
+        # What a killed process was writing.
+        for aside in [*self._store.glob(".writing-*"), *folder.glob(".trundle-*")]:
             shutil.rmtree(aside, ignore_errors=True)
         self.n_found = sum(1 for entry in self._store.iterdir() if entry.is_dir())
 

@@ -1,0 +1,254 @@
+"""A run that is killed goes on, and ends with the bytes of one that was not."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_bad_input import GOOD
+
+from trundle.cli.app import main
+from trundle.errors import InputError, UnstableStepError
+from trundle.study import load_study
+from trundle.study.jobs import compute, plan_jobs
+from trundle.study.run import run_study
+from trundle.study.unfinished import InMemory, unfinished_folder, unfinished_of
+
+# Two routes and three methods, of which one steps all dofs: nine pieces and more.
+STUDY = (
+    GOOD.replace("runs = 2", "runs = 40").replace('"4 s"', '"6 s"')
+    + """
+[[road]]
+class = "C"
+
+[[route]]
+name = "other"
+vehicle = "truck"
+path = [["12 m", "4 m"], ["0 m", "4 m"]]
+speed = "20 km/h"
+
+[[method]]
+name = "decoupled"
+interaction = "decoupled"
+f_max = "60 Hz"
+dt = "2.5 ms"
+damping = { ratio = "3 %" }
+
+[[method]]
+name = "direct"
+interaction = "coupled"
+integration = "newmark"
+dt = "5 ms"
+damping = { rayleigh_alpha = "0.8 1/s", rayleigh_beta = "0.001 s" }
+"""
+)
+
+
+def start(folder: Path, *options: str) -> subprocess.Popen:
+    # modes are found anew in every process: what must agree does not come from a shared cache
+    environment = os.environ | {"TRUNDLE_CACHE": ""}
+    return subprocess.Popen(
+        [sys.executable, "-m", "trundle", "run", "study.toml", "--out", "out", *options],
+        cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def folder_of(tmp_path: Path, name: str) -> Path:
+    folder = tmp_path / name
+    folder.mkdir()
+    (folder / "study.toml").write_text(STUDY)
+    return folder
+
+
+def arrays(folder: Path) -> dict[str, bytes]:
+    """Return every file of the store, by its name."""
+    store = folder / "out" / "results.zarr"
+    return {str(f.relative_to(store)): f.read_bytes() for f in store.rglob("*") if f.is_file()}
+
+
+def pieces(folder: Path) -> list[str]:
+    store = unfinished_folder(folder / "out") / "pieces.zarr"
+    return [e.name for e in store.glob("method*")] if store.is_dir() else []
+
+
+def wait_for_pieces(folder: Path, process: subprocess.Popen, count: int) -> None:
+    while len(pieces(folder)) < count:
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.002)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> dict[str, bytes]:
+    folder = folder_of(tmp_path_factory.mktemp("whole"), "run")
+    process = start(folder)
+    _, error = process.communicate(timeout=300)
+    assert process.returncode == 0, error
+    assert not unfinished_folder(folder / "out").exists()
+    return arrays(folder)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [1, 5])
+def test_a_killed_run_ends_with_the_same_bytes(tmp_path, whole, count):
+    """kill -9 in the middle: nothing half-written; the same command finishes what is missing."""
+    folder = folder_of(tmp_path, "killed")
+    process = start(folder)
+    wait_for_pieces(folder, process, count)
+    process.kill()
+    process.communicate()
+    assert not (folder / "out").exists()
+    left = pieces(folder)
+    assert count <= len(left) < 10
+    again = start(folder)
+    _, error = again.communicate(timeout=300)
+    assert again.returncode == 0, error
+    assert f"going on from {len(left)} finished pieces" in error
+    assert arrays(folder) == whole
+    assert sorted(e.name for e in folder.iterdir()) == ["out", "study.toml"]
+
+
+@pytest.mark.slow
+def test_workers_and_a_killed_worker_give_the_same_bytes(tmp_path, whole):
+    """Two dask workers, one of them killed with a part in its hands: the part is done again."""
+    psutil = pytest.importorskip("psutil")
+    pytest.importorskip("distributed")
+    folder = folder_of(tmp_path, "cluster")
+    process = start(folder, "--workers", "2")
+    wait_for_pieces(folder, process, 1)
+    children = psutil.Process(process.pid).children(recursive=True)
+    workers = [c for c in children if "spawn_main" in " ".join(c.cmdline())]
+    assert len(workers) >= 2
+    workers[-1].send_signal(signal.SIGKILL)
+    _, error = process.communicate(timeout=300)
+    assert process.returncode == 0, error
+    assert arrays(folder) == whole
+
+
+def test_another_study_begins_anew(tmp_path):
+    """Pieces belong to a study text; a changed seed throws them away, and so does --fresh."""
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD)
+    out = tmp_path / "out"
+
+    def stop_after_one(study) -> None:
+        job = plan_jobs(study)[0]
+        with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as store:
+            assert store.n_found == 0
+            run_study(study, store=_Stopping(store, job.pieces[0]))
+
+    study = load_study(path)
+    stop_after_one(study)
+    with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as store:
+        assert store.n_found == 1
+        raise KeyboardInterrupt
+    path.write_text(GOOD.replace("seed = 1", "seed = 2"))
+    stop_after_one(load_study(path))
+    with unfinished_of(load_study(path), out, fresh=True) as store:
+        assert store.n_found == 0
+    assert not unfinished_folder(out).exists()
+
+
+class _Stopping:
+    """A store whose owner is interrupted after a piece."""
+
+    def __init__(self, store, name: str) -> None:
+        self.store, self.name = store, name
+
+    def has(self, name: str) -> bool:
+        return self.store.has(name)
+
+    def save(self, name: str, piece) -> None:
+        self.store.save(name, piece)
+        if name == self.name:
+            raise KeyboardInterrupt
+
+    def load(self, name: str):
+        return self.store.load(name)
+
+
+def test_a_piece_comes_back_as_it_was(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD)
+    study = load_study(path)
+    memory = InMemory()
+    run_study(study, store=memory)
+    with unfinished_of(study, tmp_path / "out") as disk:
+        for job in plan_jobs(study):
+            for name in job.pieces:
+                piece = memory.load(name)
+                disk.save(name, piece)
+                again = disk.load(name)
+                assert dict(again.notes) == dict(piece.notes)
+                assert again.arrays.keys() == piece.arrays.keys()
+                for key, values in piece.arrays.items():
+                    assert again.arrays[key].dtype == np.asarray(values).dtype
+                    assert again.arrays[key].tobytes() == np.ascontiguousarray(values).tobytes()
+
+
+def test_two_runs_into_one_folder_do_not_meet(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD)
+    study = load_study(path)
+    with (
+        unfinished_of(study, tmp_path / "out"),
+        pytest.raises(InputError, match="another trundle is working"),
+        unfinished_of(study, tmp_path / "out"),
+    ):
+        pass
+
+
+def test_a_foreign_folder_is_left_alone(tmp_path):
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD)
+    foreign = tmp_path / "out.unfinished"
+    foreign.mkdir()
+    (foreign / "thesis.tex").write_text("mine")
+    with (
+        pytest.raises(InputError, match="trundle did not write it"),
+        unfinished_of(load_study(path), tmp_path / "out"),
+    ):
+        pass
+    assert (foreign / "thesis.tex").read_text() == "mine"
+
+
+def test_an_error_in_one_part_stops_the_others(tmp_path, monkeypatch):
+    """The error arrives with its attributes, and pieces that were finished stay."""
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY)
+    study = load_study(path)
+
+    def failing(job, layout, part, progress=None):
+        if job.method.name == "direct":
+            raise UnstableStepError("no longer finite", step=3, time=0.1)
+        return compute(job, layout, part, progress)
+
+    monkeypatch.setattr("trundle.study.in_threads.compute", failing)
+    memory = InMemory()
+    with pytest.raises(UnstableStepError) as caught:
+        run_study(study, store=memory)
+    assert caught.value.step == 3
+    assert memory.has(plan_jobs(study)[0].pieces[0])
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--workers", "2", "--scheduler", "tcp://127.0.0.1:1"], "give one of them"),
+        (["--scheduler", "nonsense"], "no dask scheduler answers"),
+    ],
+)
+def test_a_wrong_cluster_is_refused(tmp_path, monkeypatch, capsys, options, words):
+    pytest.importorskip("distributed")
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD)
+    monkeypatch.setattr(sys, "argv", ["trundle", "run", str(path), *options])
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 2
+    assert words in capsys.readouterr().err
+    assert [e.name for e in tmp_path.iterdir()] == ["study.toml"]

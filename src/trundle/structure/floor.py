@@ -34,6 +34,7 @@ GROUND = -1
 """Second node of a spring that stands on rigid ground."""
 
 _UP = (0.0, 0.0, 1.0)
+_ROUND_OFF = 1e-15  # against the roots of both diagonals; a coupling that counts is far above
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -304,12 +305,26 @@ class Floor:
         at = (np.concatenate(rows), np.concatenate(columns))
         matrix = sparse.coo_array((entries, at), shape=shape).tocsc()
         matrix.sum_duplicates()
-        return matrix
+        return _without_noughts(matrix)
 
     def _element_dofs(self, elements: Array) -> Array:
         dofs = self.dof_index[elements]
         dofs = np.where(elements[:, :, None] == GROUND, -1, dofs)
         return dofs.reshape(len(elements), -1)
+
+
+def _without_noughts(matrix: SparseMatrix) -> SparseMatrix:
+    """Return a matrix without entries that are nought but for the round-off of their sums.
+
+    On a level slab these are more than half of what elements store, and a factor fills with them.
+    """
+    entries = matrix.tocoo()
+    row, column = entries.coords
+    size = np.sqrt(np.abs(matrix.diagonal()))
+    keep = np.abs(entries.data) > _ROUND_OFF * size[row] * size[column]
+    keep |= row == column  # solvers look for the whole diagonal
+    at = (row[keep], column[keep])
+    return sparse.coo_array((entries.data[keep], at), shape=matrix.shape).tocsc()
 
 
 def _lowest(group: ShellGroup | BeamGroup | SpringGroup) -> int:

@@ -49,12 +49,16 @@ def compute_here(
     running: dict[Future[Piece], str] = {}
 
     def collect(at_most: int) -> None:
+        """Hand over pieces until so many parts are running."""
         while len(running) > at_most:
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 done(running.pop(future), future.result())
 
     def run(job: Job, layout: Layout, part: int) -> Piece:
+        """Compute a part, in a thread."""
+
         def tell(share: float) -> None:
+            """Tell the share done, or end the part."""
             if stop.is_set():
                 raise _StoppedError
             progress(job.pieces[part], share)
@@ -62,6 +66,7 @@ def compute_here(
         return compute(job, layout, part, tell)
 
     def carry_out(jobs: list[Job], pool: Executor, at_once: int) -> None:
+        """Compute what is missing of some jobs."""
         try:
             for job in jobs:
                 begin(job)

@@ -77,7 +77,7 @@ class Job:
 
     @property
     def pieces(self) -> tuple[str, ...]:
-        """Names of what its parts leave, unique in the study."""
+        """One name for what each part leaves, unique in the study."""
         exact = (f"{self.name}-exact",) if self.n_waves else ()
         return (*(f"{self.name}-runs{i:04d}" for i in range(len(self.parts))), *exact)
 

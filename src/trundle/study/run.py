@@ -92,6 +92,7 @@ def run_study(
     )
 
     def keep(name: str, piece: Piece) -> None:
+        """Keep a finished piece, and tell of it."""
         store.save(name, piece)
         bar.finished([name])
 

@@ -3,8 +3,8 @@
 from trundle.dynamics.damping import Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
 from trundle.dynamics.exact import ExactRecursion, Modal, ModalRecursion
-from trundle.dynamics.newmark import Newmark, NewmarkPropagator
-from trundle.dynamics.sparse_solver import Factor, available_backends, factorise
+from trundle.dynamics.newmark import HalfStep, Newmark, NewmarkPropagator
+from trundle.dynamics.sparse_solver import Factor, HalfSolve, available_backends, factorise
 from trundle.dynamics.stepping import Motion, Propagator, State
 from trundle.dynamics.system import LinearSystem, block_diagonal
 
@@ -12,6 +12,8 @@ __all__ = [
     "Damping",
     "ExactRecursion",
     "Factor",
+    "HalfSolve",
+    "HalfStep",
     "LinearSystem",
     "Modal",
     "ModalRatio",

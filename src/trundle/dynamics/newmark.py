@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -12,11 +11,11 @@ from scipy import linalg, sparse
 from trundle._checks import positive, set_frozen, within
 from trundle._typing import Array, Matrix
 from trundle.dynamics.damping import Rayleigh
-from trundle.dynamics.sparse_solver import factorise
+from trundle.dynamics.sparse_solver import Factor, HalfSolve, factorise
 from trundle.dynamics.stepping import Motion, State
 from trundle.dynamics.system import LinearSystem
 
-__all__ = ["Newmark", "NewmarkPropagator"]
+__all__ = ["HalfStep", "Newmark", "NewmarkPropagator"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,17 +56,32 @@ class Newmark:
         return f"direct integration, Newmark {name}, dt = {1e3 * self.dt:g} ms"
 
 
-@runtime_checkable
-class _Solver(Protocol):
-    def solve(self, right_hand_side: Array) -> Array: ...
-
-
 class _DenseSolver:
     def __init__(self, matrix: Array) -> None:
         self._factor = linalg.lu_factor(matrix)
 
     def solve(self, right_hand_side: Array) -> Array:
         return linalg.lu_solve(self._factor, right_hand_side)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HalfStep:
+    """Hold a step whose solution is half done: forces may still be added to it.
+
+    Attributes
+    ----------
+    forward : ndarray of float, shape (n_dofs, n_runs)
+        ``L^-1`` times the load without forces at the step's end, in the solver's order.
+    displacement, velocity : ndarray of float, shape (n_dofs, n_runs)
+        Newmark's predictors.
+    past : ndarray of float, shape (n_dofs, n_runs)
+        What the displacement gains without a solution.
+    """
+
+    forward: Float[Array, "dofs runs"]
+    displacement: Float[Array, "dofs runs"]
+    velocity: Float[Array, "dofs runs"]
+    past: Float[Array, "dofs runs"]
 
 
 class NewmarkPropagator:
@@ -117,17 +131,45 @@ class NewmarkPropagator:
     def predict(self, state: State, force: Float[Array, "dofs runs"] | None = None) -> Motion:
         """Return the motion at the step's end under a known force there (none: zero)."""
         u_hat, v_hat = self._predictors(state)
-        system, w = self.system, self.a1 * u_hat - v_hat
-        if self._rayleigh is None:
-            load = system.mass @ (self.a0 * u_hat) + system.damping @ w
-        else:
-            load = system.mass @ (self.a0 * u_hat + self._on_mass * w)
+        w = self.a1 * u_hat - v_hat
+        load = self._load(u_hat, w)
         if force is not None:
             load = load + force
         u = self.solver.solve(load)
         if self._rayleigh is not None:
             u = u + self._past_solution * w
         return Motion(displacement=u, velocity=v_hat + self.a1 * (u - u_hat))
+
+    @property
+    def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
+        """Both halves of a solution, where the solver offers them."""
+        return None if isinstance(self.solver, _DenseSolver) else self.solver.halves()
+
+    def begin(self, state: State, forward: HalfSolve) -> HalfStep:
+        """Do the first half of a step without forces at its end."""
+        u_hat, v_hat = self._predictors(state)
+        w = self.a1 * u_hat - v_hat
+        load = self._load(u_hat, w)
+        return HalfStep(
+            forward=forward(load), displacement=u_hat, velocity=v_hat, past=self._past_solution * w
+        )
+
+    def complete(self, half: HalfStep, more: Float[Array, "dofs runs"], back: HalfSolve) -> State:
+        """Do the second half, with `more` added to the first half's solution."""
+        change = back(half.forward + more)
+        change += half.past
+        u = change.copy()
+        change -= half.displacement
+        return State(
+            displacement=u,
+            velocity=half.velocity + self.a1 * change,
+            acceleration=self.a0 * change,
+        )
+
+    def _load(self, u_hat: Array, w: Array) -> Array:
+        if self._rayleigh is None:
+            return self.system.mass @ (self.a0 * u_hat) + self.system.damping @ w
+        return self.system.mass @ (self.a0 * u_hat + self._on_mass * w)
 
     def respond(self, force: Float[Array, "dofs columns"]) -> Motion:
         """Return the change of that motion by forces at the step's end."""
@@ -156,7 +198,7 @@ class NewmarkPropagator:
         return u_hat, state.velocity + (dt * (1.0 - method.gamma)) * state.acceleration
 
 
-def _factor(effective: Matrix, backend: str | None) -> _Solver:
+def _factor(effective: Matrix, backend: str | None) -> Factor | _DenseSolver:
     if sparse.issparse(effective):
         return factorise(sparse.csc_array(effective), backend=backend)
     return _DenseSolver(np.asarray(effective))

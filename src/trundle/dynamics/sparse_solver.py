@@ -10,8 +10,9 @@ import importlib
 import importlib.util
 import os
 import weakref
-from functools import cache
-from typing import Any, Protocol, runtime_checkable
+from collections.abc import Callable
+from functools import cache, partial
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from scipy import sparse
@@ -20,7 +21,10 @@ from scipy.sparse import linalg as sparse_linalg
 from trundle._typing import Array, SparseMatrix
 from trundle.errors import InputError, UnrestrainedModeError
 
-__all__ = ["BACKENDS", "Factor", "available_backends", "factorise"]
+__all__ = ["BACKENDS", "Factor", "HalfSolve", "available_backends", "factorise"]
+
+HalfSolve: TypeAlias = Callable[[Array], Array]
+"""One half of a solution with a triangular factor, in the solver's own order of rows."""
 
 BACKENDS = ("pardiso", "superlu")
 """Names of the sparse solvers, in the order of preference."""
@@ -37,6 +41,10 @@ class Factor(Protocol):
 
     def solve(self, right_hand_side: Array) -> Array:
         """Return ``A^-1 b`` for b of shape (n,) or (n, k)."""
+        ...
+
+    def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
+        """Return ``L^-1 b`` and ``L^-T y`` of ``A = L L^T``, where the solver offers them."""
         ...
 
 
@@ -105,6 +113,9 @@ class _SuperLUFactor:
         if self.n_negative and self._error(matrix) > _PRECISE:
             self._refined = matrix
 
+    def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
+        return None
+
     def solve(self, right_hand_side: Array) -> Array:
         b = np.ascontiguousarray(right_hand_side)
         x = self._lu.solve(b)
@@ -147,15 +158,28 @@ class _PardisoFactor:
             return False
         # The factorisation call resets this entry, so refinement is switched off after it.
         solver.iparm[7] = 0
-        solver.set_phase(33)
+        solver.set_phase(_BOTH)
         self._solver = solver
         return True
 
     def solve(self, right_hand_side: Array) -> Array:
         return self._solver._call_pardiso(self._upper, np.asfortranarray(right_hand_side))
 
+    def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
+        if self._solver.mtype != _DEFINITE:
+            return None
+        return partial(self._phase, _FORWARD), partial(self._phase, _BACKWARD)
+
+    def _phase(self, phase: int, right_hand_side: Array) -> Array:
+        self._solver.set_phase(phase)
+        try:
+            return self.solve(right_hand_side)
+        finally:
+            self._solver.set_phase(_BOTH)
+
 
 _PRECISE = 2e-11  # residual of a solution above which every solution is refined once
+_BOTH, _FORWARD, _BACKWARD = 33, 331, 333  # PARDISO's phases of a solution
 _DEFINITE, _INDEFINITE = 2, -2  # PARDISO's matrix types for real symmetric matrices
 
 

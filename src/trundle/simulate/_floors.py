@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from typing import Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
+from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import Motion, NewmarkPropagator, State
+from trundle.dynamics import HalfSolve, HalfStep, Motion, NewmarkPropagator, State
 from trundle.route import ContactRows
 from trundle.simulate._residual import StaticFlexibility, unit_loads
 
 __all__ = ["ContactFloor", "FullFloor", "RigidGround"]
+
+Prediction: TypeAlias = Motion | HalfStep
+"""The motion at a step's end without the contact forces there, or a step half done."""
 
 Reading = tuple[Array, Array, Array]
 """Displacement, velocity and acceleration, each of shape (n_points, n_runs)."""
@@ -29,11 +33,11 @@ class ContactFloor(Protocol):
         """Return the state at rest, deflected by static forces if given."""
         ...
 
-    def predict(self, step: int, state: State, forces: Array | None) -> Motion:
+    def predict(self, step: int, state: State, forces: Array | None) -> Prediction:
         """Return the motion at the step's end under known contact forces (none: zero)."""
         ...
 
-    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
+    def under_wheels(self, step: int, motion: Prediction, before: Array) -> tuple[Array, Array]:
         """Return the floor's height and its rate under each moving wheel.
 
         `before` holds the contact forces one step earlier.
@@ -49,7 +53,7 @@ class ContactFloor(Protocol):
         ...
 
     def finish(
-        self, step: int, state: State, motion: Motion, forces: Array, *, applied: bool
+        self, step: int, state: State, motion: Prediction, forces: Array, *, applied: bool
     ) -> State:
         """Return the state at the step's end; `applied` says the motion has the forces."""
         ...
@@ -70,13 +74,13 @@ class RigidGround:
         empty = np.zeros((0, n_runs))
         return State(displacement=empty, velocity=empty, acceleration=empty)
 
-    def predict(self, step: int, state: State, forces: Array | None) -> Motion:
+    def predict(self, step: int, state: State, forces: Array | None) -> Prediction:
         del step, forces
         return Motion(displacement=state.displacement, velocity=state.velocity)
 
-    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
+    def under_wheels(self, step: int, motion: Prediction, before: Array) -> tuple[Array, Array]:
         del step, before
-        still = np.zeros((self._n, motion.displacement.shape[1]))
+        still = np.zeros((self._n, motion.velocity.shape[1]))
         return still, still
 
     def compliance(self, step: int) -> tuple[Array, Array]:
@@ -87,7 +91,7 @@ class RigidGround:
         return np.zeros((self._n, self._n))
 
     def finish(
-        self, step: int, state: State, motion: Motion, forces: Array, *, applied: bool
+        self, step: int, state: State, motion: Prediction, forces: Array, *, applied: bool
     ) -> State:
         del step, motion, forces, applied
         return state
@@ -108,8 +112,10 @@ def _spread(weights: Array) -> Array:
 class FullFloor:
     """A floor in all its dofs, integrated directly.
 
-    The effective stiffness is factorised once. Its solutions for a unit force at each dof of
-    the route are kept, so a coupled step costs one back-substitution and a short update.
+    The effective stiffness is factorised once, as ``A = L L^T`` where the solver shows both halves
+    of a solution. Then ``L^-1`` of a unit force at each dof of the route is kept, which is sparse:
+    what the wheels find is its product with the first half of the step, and their forces are added
+    before the second. Otherwise whole solutions for unit forces are kept and added after it.
     """
 
     def __init__(
@@ -131,10 +137,18 @@ class FullFloor:
         self._value, self._slope = rows.value.reshape(shape), rows.slope.reshape(shape)
         self._load_share = rows.load_share.reshape(-1, self._n)
         self._route_dofs = rows.used_dofs()
-        self._gathered_at, self._gathered = np.zeros(0, dtype=np.intp), np.zeros((0, 0))
-        # Unit solutions, one row a route dof, so that a step reads whole rows.
-        self._unit = self._unit_solutions() if coupled else np.zeros((0, 0))
-        self._unit_at_route = self._unit[:, self._route_dofs] if coupled else self._unit
+        self._gathered_at = np.zeros(0, dtype=np.intp)
+        self._gathered: Array | SparseMatrix = np.zeros((0, 0))
+        self._halves: tuple[HalfSolve, HalfSolve] | None = propagator.halves if coupled else None
+        self._unit: Array | SparseMatrix = np.zeros((0, 0))
+        self._unit_at_route = np.zeros((0, 0))
+        if self._halves is not None:
+            self._unit = self._half_solutions(self._halves[0])
+            self._unit_at_route = (self._unit @ self._unit.T).toarray()
+        elif coupled:
+            # one row a route dof, so that a step reads whole rows
+            self._unit = self._unit_solutions()
+            self._unit_at_route = self._unit[:, self._route_dofs]
 
     def start(self, n_runs: int, forces: Array | None) -> State:
         u = np.zeros((self._n_dofs, n_runs))
@@ -146,13 +160,19 @@ class FullFloor:
         unit = self._static.solve(self._load(0, np.eye(self._n)))
         return -np.einsum("cw,cwj->cj", self._value[0], unit[self._dofs[0]])
 
-    def predict(self, step: int, state: State, forces: Array | None) -> Motion:
+    def predict(self, step: int, state: State, forces: Array | None) -> Prediction:
+        if forces is None and self._halves is not None:
+            return self._propagator.begin(state, self._halves[0])
         return self._propagator.predict(state, None if forces is None else self._load(step, forces))
 
-    def under_wheels(self, step: int, motion: Motion, before: Array) -> tuple[Array, Array]:
+    def under_wheels(self, step: int, motion: Prediction, before: Array) -> tuple[Array, Array]:
         del before
         dofs = self._dofs[step]
         u, v = motion.displacement[dofs], motion.velocity[dofs]
+        if isinstance(motion, HalfStep):
+            found = self._unit_under_wheels(step) @ motion.forward
+            found = found.reshape(u.shape) + motion.past[dofs]
+            u, v = found, v + self._propagator.a1 * (found - u)
         value, slope = self._value[step][:, None, :], self._slope[step][:, None, :]
         height, rate = (value @ u)[:, 0], (value @ v)[:, 0]
         return height, rate + self._speed[step][:, None] * (slope @ u)[:, 0]
@@ -167,11 +187,14 @@ class FullFloor:
         return sinking, self._propagator.a1 * sinking + convective
 
     def finish(
-        self, step: int, state: State, motion: Motion, forces: Array, *, applied: bool
+        self, step: int, state: State, motion: Prediction, forces: Array, *, applied: bool
     ) -> State:
+        load = _spread(self._value[step]).T @ (self._load_share[step][:, None] * forces)
+        if isinstance(motion, HalfStep):
+            assert self._halves is not None  # only they leave a step half done
+            more = -(self._unit_under_wheels(step).T @ load)
+            return self._propagator.complete(motion, more, self._halves[1])
         if not applied:
-            shared = self._load_share[step][:, None] * forces
-            load = _spread(self._value[step]).T @ shared
             change = -(load.T @ self._unit_under_wheels(step)).T
             motion = Motion(
                 displacement=motion.displacement + change,
@@ -189,18 +212,25 @@ class FullFloor:
             out[part] = self._propagator.respond(unit).displacement.T
         return out
 
+    def _half_solutions(self, forward: HalfSolve) -> SparseMatrix:
+        parts = [
+            sparse.csr_array(forward(unit).T)
+            for _, unit in unit_loads(self._route_dofs, self._n_dofs)
+        ]
+        return sparse.vstack(parts, format="csr")
+
     def _load(self, step: int, forces: Array) -> Array:
         load = np.zeros((self._n_dofs, forces.shape[1]))
         shared = self._load_share[step][:, None] * forces
         np.subtract.at(load, self._dofs[step], self._value[step][:, :, None] * shared[:, None, :])
         return load
 
-    def _unit_under_wheels(self, step: int) -> Array:
+    def _unit_under_wheels(self, step: int) -> Array | SparseMatrix:
         """Return the unit solutions of the wheels' dofs, gathered anew only at a mesh line."""
         at = self._places(step)
         if not np.array_equal(at, self._gathered_at):
             self._gathered_at = at
-            self._gathered = np.take(self._unit, at, axis=0)
+            self._gathered = self._unit[at]
         return self._gathered
 
     def _places(self, step: int) -> Array:

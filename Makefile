@@ -56,6 +56,8 @@ faults: .venv/.ready-dev
 bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/direct_step.py
 	$(BIN)/python benchmarks/ensemble_kernel.py
+	$(BIN)/python benchmarks/modes.py --eigsh
+	$(BIN)/python benchmarks/memory.py
 
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs

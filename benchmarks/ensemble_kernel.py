@@ -40,6 +40,8 @@ def main() -> None:
     layout = lay_out(
         prepared, crossing, method=method, points={"p": (32.5, 62.5)}, duration=STEPS * DT
     )
+    n_modes = prepared.modes.n_modes
+    del floor, modes, prepared  # a layout holds what it needs of them
     before = dgemm_rate()
     kernel = 0.0
     start = time.perf_counter()
@@ -51,17 +53,17 @@ def main() -> None:
         layout.over(road)
         kernel += time.perf_counter() - begun
     whole = time.perf_counter() - start
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6  # of the whole process
     dgemm = 0.5 * (before + dgemm_rate())
     on_floor = np.mean(
         [layout.floor.loads(i, i + 1).any(axis=(0, 2)).sum() for i in range(0, STEPS, 40)]
     )
-    operations = (8 * on_floor + 12) * prepared.modes.n_modes * STEPS * RUNS
+    operations = (8 * on_floor + 12) * n_modes * STEPS * RUNS
     blas = [pool["internal_api"] for pool in ThreadpoolController().info()]
     print(
         json.dumps(
             {
-                "modes": prepared.modes.n_modes,
+                "modes": n_modes,
                 "wheels_on_floor_mean": round(float(on_floor), 2),
                 "kernel_s": round(kernel, 2),
                 "kernel_and_roads_s": round(whole, 2),

@@ -194,7 +194,7 @@ def test_an_interrupt_waits_for_the_end_of_a_write():
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("stage", ["class B", "writing results", "figure"])
+@pytest.mark.parametrize("stage", ["coupled", "writing results", "figure"])
 def test_an_interrupted_run_leaves_no_half_results(tmp_path, number, stage):
     """Ctrl-C in the runs, while writing, while drawing: exit 130, the folder as it was."""
     study = tmp_path / "study.toml"

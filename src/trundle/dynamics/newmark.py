@@ -154,9 +154,9 @@ class NewmarkPropagator:
             forward=forward(load), displacement=u_hat, velocity=v_hat, past=self._past_solution * w
         )
 
-    def complete(self, half: HalfStep, more: Float[Array, "dofs runs"], back: HalfSolve) -> State:
-        """Do the second half, with `more` added to the first half's solution."""
-        change = back(half.forward + more)
+    def complete(self, half: HalfStep, back: HalfSolve) -> State:
+        """Do the second half, whatever was added to the first half's solution."""
+        change = back(half.forward)
         change += half.past
         u = change.copy()
         change -= half.displacement

@@ -15,6 +15,8 @@ from trundle.simulate._residual import StaticFlexibility, unit_loads
 
 __all__ = ["ContactFloor", "FullFloor", "RigidGround"]
 
+_MOST_ELEMENTS = 256  # whose half solutions are kept, each some hundred kilobytes
+
 Prediction: TypeAlias = Motion | HalfStep
 """The motion at a step's end without the contact forces there, or a step half done."""
 
@@ -138,7 +140,8 @@ class FullFloor:
         self._load_share = rows.load_share.reshape(-1, self._n)
         self._route_dofs = rows.used_dofs()
         self._gathered_at = np.zeros(0, dtype=np.intp)
-        self._gathered: Array | SparseMatrix = np.zeros((0, 0))
+        self._gathered = np.zeros((0, 0))
+        self._half_elements: dict[bytes, tuple[Array, Array]] = {}
         self._halves: tuple[HalfSolve, HalfSolve] | None = propagator.halves if coupled else None
         self._unit: Array | SparseMatrix = np.zeros((0, 0))
         self._unit_at_route = np.zeros((0, 0))
@@ -170,8 +173,9 @@ class FullFloor:
         dofs = self._dofs[step]
         u, v = motion.displacement[dofs], motion.velocity[dofs]
         if isinstance(motion, HalfStep):
-            found = self._unit_under_wheels(step) @ motion.forward
-            found = found.reshape(u.shape) + motion.past[dofs]
+            halves = [self._half_under_wheel(step, wheel) for wheel in range(self._n)]
+            found = np.array([unit @ motion.forward[rows] for rows, unit in halves])
+            found += motion.past[dofs]
             u, v = found, v + self._propagator.a1 * (found - u)
         value, slope = self._value[step][:, None, :], self._slope[step][:, None, :]
         height, rate = (value @ u)[:, 0], (value @ v)[:, 0]
@@ -192,8 +196,10 @@ class FullFloor:
         load = _spread(self._value[step]).T @ (self._load_share[step][:, None] * forces)
         if isinstance(motion, HalfStep):
             assert self._halves is not None  # only they leave a step half done
-            more = -(self._unit_under_wheels(step).T @ load)
-            return self._propagator.complete(motion, more, self._halves[1])
+            for wheel, force in enumerate(np.split(load, self._n)):
+                rows, unit = self._half_under_wheel(step, wheel)
+                motion.forward[rows] -= unit.T @ force
+            return self._propagator.complete(motion, self._halves[1])
         if not applied:
             change = -(load.T @ self._unit_under_wheels(step)).T
             motion = Motion(
@@ -225,12 +231,27 @@ class FullFloor:
         np.subtract.at(load, self._dofs[step], self._value[step][:, :, None] * shared[:, None, :])
         return load
 
-    def _unit_under_wheels(self, step: int) -> Array | SparseMatrix:
+    def _half_under_wheel(self, step: int, wheel: int) -> tuple[Array, Array]:
+        """Return the half solutions of one wheel's dofs, where they are not nought.
+
+        Wheels that follow each other over an element share them.
+        """
+        at = self._places(step)[wheel * self._width : (wheel + 1) * self._width]
+        key = at.tobytes()
+        if key not in self._half_elements:
+            if len(self._half_elements) > _MOST_ELEMENTS:
+                self._half_elements.clear()
+            some = sparse.csc_array(self._unit[at])
+            rows = np.flatnonzero(np.diff(some.indptr))
+            self._half_elements[key] = (rows, some[:, rows].toarray())
+        return self._half_elements[key]
+
+    def _unit_under_wheels(self, step: int) -> Array:
         """Return the unit solutions of the wheels' dofs, gathered anew only at a mesh line."""
         at = self._places(step)
         if not np.array_equal(at, self._gathered_at):
             self._gathered_at = at
-            self._gathered = self._unit[at]
+            self._gathered = np.asarray(self._unit[at])
         return self._gathered
 
     def _places(self, step: int) -> Array:

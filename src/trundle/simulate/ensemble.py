@@ -108,8 +108,13 @@ def batches(
     for start in range(0, len(runs), size):
         part = runs[start : start + size]
         share = (start / len(runs), len(part) / len(runs))
-        road = roads_under_wheels(layout.crossings, layout.timeline, part, seed)
-        yield _runs_of(layout, layout.over(road, progress=part_of(progress, *share)), seed)
+        yield _drive(layout, part, seed, part_of(progress, *share))
+
+
+def _drive(layout: Layout, runs: range, seed: int, progress: Progress | None) -> Runs:
+    """Run some runs; their roads are let go of with the end of this call."""
+    road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed)
+    return _runs_of(layout, layout.over(road, progress=progress), seed)
 
 
 def runs_with_mean(

@@ -44,7 +44,7 @@ class ExactStatistics:
         Velocity in the resolved bands.
     quadrature_error : float
         Largest relative change of an RMS over the record if only every other wave stood for the
-        road: above what more waves would change.
+        road. Usually above what more waves would change; too small where both sets are too coarse.
     n_waves : int
         Waves summed.
     point_names : tuple of str

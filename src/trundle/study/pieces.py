@@ -16,6 +16,7 @@ from trundle.study.cells import EXACT_SHARES, Cell, CellKey, History
 __all__ = ["Piece", "cell_of", "exact_piece", "runs_piece"]
 
 _RUNS = ("peak_acceleration", "peak_time", "rms_velocity", "peak_contact_force", "tension")
+_COARSE = 0.05  # change of an RMS by half the waves above which exact statistics are doubted
 _HISTORY = ("displacement", "velocity", "acceleration", "contact_forces")
 _PROCESS = ("variance", "rate_variance", "covariance", "turning")
 
@@ -109,7 +110,21 @@ def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> 
         top=float(notes["top"]),
         warnings=(
             *pulling,
+            *_quadrature_warnings(key, exact),
             *(FitnessWarning(subject=s, message=text) for s, text in notes["warnings"]),
+        ),
+    )
+
+
+def _quadrature_warnings(key: CellKey, exact: Sequence[Piece]) -> tuple[FitnessWarning, ...]:
+    error = float(exact[0].notes["quadrature_error"]) if exact else 0.0
+    if error <= _COARSE:
+        return ()
+    return (
+        FitnessWarning(
+            subject=f"exact statistics, {key.case}",
+            message=f"their waves are sparse: half of them change an RMS by {100 * error:.0f} %; "
+            "trust the runs beside them",
         ),
     )
 

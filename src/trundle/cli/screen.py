@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 from typing import TypeAlias
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.table import Table
 from rich.text import Text
 
@@ -48,6 +55,8 @@ def progress_bar() -> Generator[Tell]:
         BarColumn(),
         TextColumn("{task.percentage:3.0f} %"),
         TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(elapsed_when_finished=False),
         console=Console(stderr=True),
         transient=True,
     ) as progress:
@@ -55,12 +64,25 @@ def progress_bar() -> Generator[Tell]:
         yield lambda what, share: progress.update(task, description=what, completed=share)
 
 
+def _time_left(elapsed: float, done: float, left: float) -> str:
+    """Return about how long the rest takes, once enough is done to say so."""
+    if elapsed < 2.0 or done < 0.02:
+        return ""
+    seconds = elapsed * left / done
+    return f", {seconds:.0f} s left" if seconds < 90 else f", {seconds / 60:.0f} min left"
+
+
 def _line_teller() -> Tell:
     seen: set[str] = set()
+    begun: list[tuple[float, float]] = []  # when the first share was told, and which
 
     def tell(what: str, share: float) -> None:
+        now = time.monotonic()
+        if not begun:
+            begun.append((now, share))
         if what not in seen:
             seen.add(what)
-            print(f"[{100 * share:3.0f} %] {what}", file=sys.stderr, flush=True)
+            left = _time_left(now - begun[0][0], share - begun[0][1], 1.0 - share)
+            print(f"[{100 * share:3.0f} %{left}] {what}", file=sys.stderr, flush=True)
 
     return tell

@@ -6,6 +6,7 @@ between the steps.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -141,3 +142,10 @@ class ModalRecursion:
         unit = np.broadcast_to(np.array([[0.0], [1.0]]), (len(omega), 2, 1))
         phi, start, end = first_order_hold(state_matrix, unit, dt)
         self.phi, self.from_start, self.from_end = phi, start[:, :, 0], end[:, :, 0]
+
+    def first(self, n_modes: int) -> ModalRecursion:
+        """Return the steps of the first modes alone."""
+        fewer = copy(self)
+        for name in ("square", "double", "phi", "from_start", "from_end"):
+            setattr(fewer, name, getattr(self, name)[:n_modes])
+        return fewer

@@ -18,6 +18,7 @@ from trundle.report.tables import (
     comparison_rows,
     exact_rows,
     summary_rows,
+    truncation_rows,
     verdict_matrix,
 )
 from trundle.road import CLASS_NAMES, class_limits
@@ -243,6 +244,7 @@ def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
         bounds=bound_rows(result),
         summary=summary_rows(result),
         exact=exact_rows(result),
+        truncation=truncation_rows(result),
         columns=columns,
         matrix=matrix,
         verdict=_headline(result),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trundle.criteria import Verdict
+from trundle.dynamics import Modal
 from trundle.response import percentile_interval, percentile_rank, upper_bounds
 from trundle.study.cells import CellKey
 from trundle.study.model import PrintedBound
@@ -18,10 +19,12 @@ __all__ = [
     "ComparisonRow",
     "ExactRow",
     "SummaryRow",
+    "TruncationRow",
     "bound_rows",
     "comparison_rows",
     "exact_rows",
     "summary_rows",
+    "truncation_rows",
     "verdict_matrix",
 ]
 
@@ -69,6 +72,28 @@ class ExactRow:
     sampled_peak: tuple[float, float]
     interval: tuple[float, float]
     quadrature_error: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class TruncationRow:
+    """Hold what the highest octave of a method's modes changes, the largest of all points.
+
+    Attributes
+    ----------
+    case, method : str
+        The cells of all roads, whose relative changes hardly differ.
+    f_max, fewer : float
+        Highest frequency of the modes used, and of those compared with [Hz].
+    velocity, acceleration : float
+        RMS of the difference over that of the response.
+    """
+
+    case: str
+    method: str
+    f_max: float
+    fewer: float
+    velocity: float
+    acceleration: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,6 +183,28 @@ def exact_rows(result: StudyResult) -> list[ExactRow]:
                     quadrature_error=exact.quadrature_error,
                 )
             )
+    return rows
+
+
+def truncation_rows(result: StudyResult) -> list[TruncationRow]:
+    """Return what the modes left out may change, one row a case and method that uses modes."""
+    road = next(iter(result.study.roads))
+    rows = []
+    for method in result.study.methods:
+        for case in result.study.cases:
+            change = result.cells[CellKey(case.name, road, method.name)].truncation
+            modal = method.interaction.integration
+            if change is not None and isinstance(modal, Modal):
+                rows.append(
+                    TruncationRow(
+                        case=case.name,
+                        method=method.name,
+                        f_max=modal.f_max,
+                        fewer=change.f_max,
+                        velocity=float(change.velocity.max()),
+                        acceleration=float(change.acceleration.max()),
+                    )
+                )
     return rows
 
 

@@ -14,6 +14,7 @@ from trundle.simulate.harmonics import (
 from trundle.simulate.layout import Layout, lay_out
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import MeanResponse, Runs
+from trundle.simulate.truncation import TruncationChange, truncation_change
 
 __all__ = [
     "Coupled",
@@ -31,6 +32,7 @@ __all__ = [
     "Rayleigh",
     "Runs",
     "StaticFlexibility",
+    "TruncationChange",
     "Waves",
     "batches",
     "contact_forces",
@@ -41,4 +43,5 @@ __all__ = [
     "place_waves",
     "prepare",
     "runs_with_mean",
+    "truncation_change",
 ]

@@ -59,6 +59,27 @@ class ModalFloor:
         own._chunks = {}
         return own
 
+    def with_first(self, n_modes: int) -> ModalFloor:
+        """Return the floor in its first modes; the others answer statically if any do."""
+        fewer = self.for_one_drive()
+        fewer.n_modes, fewer.propagator = n_modes, self.propagator.first(n_modes)
+        fewer.points = np.ascontiguousarray(self.points[:, :n_modes])
+        fewer._square = self._square[:n_modes]
+        fewer._route_shapes = np.ascontiguousarray(self._route_shapes[:, :n_modes])
+        if self._residual is not None:
+            fewer._residual = self._residual.with_more(
+                self._route_shapes[:, n_modes:] / np.sqrt(self._square[n_modes:])
+            )
+        return fewer
+
+    def count_below(self, f: float) -> int:
+        """Return how many of the modes lie below a frequency [Hz]."""
+        return int(np.searchsorted(self._square, (2.0 * np.pi * f) ** 2))
+
+    def static_share(self, first: int) -> Float[Array, "points dofs"]:
+        """Return what modes from a first on add statically, at the points by the route's dofs."""
+        return (self.points[:, first:] / self._square[first:]) @ self._route_shapes[:, first:].T
+
     def shapes(self, start: int, stop: int) -> tuple[Array, Array]:
         """Return mode shapes and slopes under the wheels, (n_steps, n_contacts, n_modes)."""
         first, last = start // _CHUNK, (stop - 1) // _CHUNK
@@ -127,6 +148,12 @@ class _Residual:
         shape = (-1, n_wheels, rows.dofs.shape[1])
         self._at, self._value = at.reshape(shape), rows.value.reshape(shape)
         self._load_share = rows.load_share.reshape(-1, n_wheels)
+
+    def with_more(self, flexible: Float[Array, "dofs modes"]) -> _Residual:
+        """Return the residual with further modes left out, given as shapes over frequencies."""
+        more = copy(self)
+        more._block = self._block + flexible @ flexible.T
+        return more
 
     def sinking(self, start: int, stop: int) -> Array:
         at, value = self._at[start:stop], self._value[start:stop]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -117,6 +117,38 @@ class Layout:
     def static(self) -> bool:
         """Whether the record starts in static equilibrium."""
         return isinstance(self.crossings[0].entry, StaticStart)
+
+    def with_modes_below(self, f: float) -> Layout:
+        """Return the same with fewer modes: those left out answer statically, if any do.
+
+        Parameters
+        ----------
+        f : float
+            Highest frequency of the modes kept [Hz], at most that of the layout.
+
+        Raises
+        ------
+        InputError
+            The floor is not stepped in its modes, or has none below f.
+        """
+        modal, floor = self.integration, self.floor
+        if not isinstance(modal, Modal) or not isinstance(floor, ModalFloor):
+            raise InputError("only a floor in its modes can be given fewer of them")
+        n_modes = floor.count_below(f)
+        if n_modes == 0:
+            raise InputError(f"no mode lies below {f:g} Hz; raise it")
+        residual = None
+        if self.residual is not None:
+            rows, block = self.residual
+            block = block.copy()
+            block[:, rows.used_dofs()] += floor.static_share(n_modes)
+            residual = (rows, block)
+        return replace(
+            self,
+            method=replace(self.method, integration=replace(modal, f_max=min(f, modal.f_max))),
+            floor=floor.with_first(n_modes),
+            residual=residual,
+        )
 
     def over(
         self,

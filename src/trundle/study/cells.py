@@ -9,6 +9,7 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, ExactStatistics
+from trundle.simulate import TruncationChange
 
 __all__ = ["EXACT_SHARES", "Cell", "CellKey", "History"]
 
@@ -70,6 +71,8 @@ class Cell:
         Exact statistics over all roads of the class; only modes have them.
     exact_peaks : ndarray of float or None, shape (n_shares, n_points)
         Peak accelerations that `EXACT_SHARES` of all roads stay below [m/s2].
+    truncation : TruncationChange or None
+        What some more modes left out would change, on the first road of its waviness.
     history : History
         The first run in time.
     top : float
@@ -87,6 +90,7 @@ class Cell:
     tension_share: Float[Array, " contacts"]
     exact: ExactStatistics | None
     exact_peaks: Float[Array, "shares points"] | None
+    truncation: TruncationChange | None
     history: History
     top: float
     warnings: tuple[FitnessWarning, ...]

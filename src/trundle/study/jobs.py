@@ -18,6 +18,7 @@ from trundle.simulate import (
     harmonics,
     lay_out,
     runs_with_mean,
+    truncation_change,
 )
 from trundle.simulate.ensemble import runs_at_once
 from trundle.study.model import Case, MethodPlan, Study
@@ -175,7 +176,9 @@ def compute(job: Job, layout: Layout, part: int, progress: Progress | None = Non
         reduced = reduce_rougher(runs, mean, factors, averaging=job.averaging)
         history = runs.part(slice(0, 1)) if part == 0 else None
         histories = [] if history is None else [history.rougher(mean, f) for f in factors]
-        return runs_piece(runs, reduced, histories)
+        first = part == 0 and job.modal
+        change = truncation_change(layout, runs, job.parts[0]) if first else None
+        return runs_piece(runs, reduced, histories, truncation=change)
     answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
     exact = exact_statistics(answers, f_max=layout.f_max)
     return exact_piece(exact, factors)

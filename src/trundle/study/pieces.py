@@ -9,7 +9,7 @@ from typing import Any
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, ExactStatistics, Process, Reduced, join
-from trundle.simulate import Runs
+from trundle.simulate import Runs, TruncationChange
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
 from trundle.study.cells import EXACT_SHARES, Cell, CellKey, History
 
@@ -18,6 +18,7 @@ __all__ = ["Piece", "cell_of", "exact_piece", "runs_piece"]
 _RUNS = ("peak_acceleration", "peak_time", "rms_velocity", "peak_contact_force", "tension")
 _COARSE = 0.05  # change of an RMS by half the waves above which exact statistics are doubted
 _HISTORY = ("displacement", "velocity", "acceleration", "contact_forces")
+_TRUNCATION = ("velocity", "acceleration")
 _PROCESS = ("variance", "rate_variance", "covariance", "turning")
 
 
@@ -37,7 +38,13 @@ class Piece:
     notes: Mapping[str, Any]
 
 
-def runs_piece(runs: Runs, reduced: Sequence[Reduced], histories: Sequence[Runs]) -> Piece:
+def runs_piece(
+    runs: Runs,
+    reduced: Sequence[Reduced],
+    histories: Sequence[Runs],
+    *,
+    truncation: TruncationChange | None,
+) -> Piece:
     """Return what some runs leave on every road; `histories` hold the first run, or nothing."""
     arrays: dict[str, Array] = {"time": runs.time, "mid_band": reduced[0].spectra.mid_band}
     arrays["resolved"] = reduced[0].spectra.resolved
@@ -46,13 +53,16 @@ def runs_piece(runs: Runs, reduced: Sequence[Reduced], histories: Sequence[Runs]
         arrays[f"{i}.band_levels"] = kept.spectra.values
     for i, history in enumerate(histories):
         arrays |= {f"{i}.history.{name}": getattr(history, name)[0] for name in _HISTORY}
-    notes = {
+    notes: dict[str, Any] = {
         "averaging": reduced[0].spectra.averaging,
         "point_names": list(runs.point_names),
         "contact_names": list(runs.contact_names),
         "top": min(runs.f_max, runs.sampling_frequency / 2.5),
         "warnings": [[w.subject, w.message] for w in runs.warnings if w.subject != LOST_CONTACT],
     }
+    if truncation is not None:
+        arrays |= {f"truncation.{name}": getattr(truncation, name) for name in _TRUNCATION}
+        notes["truncation_f_max"] = truncation.f_max
     return Piece(arrays=arrays, notes=notes)
 
 
@@ -104,6 +114,7 @@ def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> 
         tension_share=runs.tension.mean(axis=0),
         exact=_exact(exact[0]).rougher(factor) if exact else None,
         exact_peaks=exact[0].arrays[f"{road}.peaks"] if exact else None,
+        truncation=_truncation(sampled[0]),
         history=History(
             time=first["time"], **{name: first[f"{road}.history.{name}"] for name in _HISTORY}
         ),
@@ -126,6 +137,15 @@ def _quadrature_warnings(key: CellKey, exact: Sequence[Piece]) -> tuple[FitnessW
             message=f"their waves are sparse: half of them change an RMS by {100 * error:.0f} %; "
             "trust the runs beside them",
         ),
+    )
+
+
+def _truncation(piece: Piece) -> TruncationChange | None:
+    if "truncation_f_max" not in piece.notes:
+        return None
+    return TruncationChange(
+        f_max=float(piece.notes["truncation_f_max"]),
+        **{name: piece.arrays[f"truncation.{name}"] for name in _TRUNCATION},
     )
 
 

@@ -214,7 +214,7 @@ def summary_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
                     row[f"{name}_p{share:02d}_{unit}"] = float(np.percentile(values, share))
                 low, high = percentile_interval(values, 95.0)
                 row[f"{name}_p95_low_{unit}"], row[f"{name}_p95_high_{unit}"] = low, high
-            row |= _exact_columns(cell, i)
+            row |= _exact_columns(cell, i) | _truncation_columns(cell, i)
             yield row
 
 
@@ -229,6 +229,17 @@ def _exact_columns(cell: Cell, point: int) -> dict[str, float]:
         "exact_peak_acceleration_p50_m_s2": (np.nan if peaks is None else float(peaks[0, point])),
         "exact_peak_acceleration_p95_m_s2": (np.nan if peaks is None else float(peaks[1, point])),
         "exact_quadrature_error": np.nan if exact is None else exact.quadrature_error,
+    }
+
+
+def _truncation_columns(cell: Cell, point: int) -> dict[str, float]:
+    """Return what the highest octave of modes changes; not-a-number without modes."""
+    change = cell.truncation
+    return {
+        "truncation_change_velocity": np.nan if change is None else float(change.velocity[point]),
+        "truncation_change_acceleration": (
+            np.nan if change is None else float(change.acceleration[point])
+        ),
     }
 
 

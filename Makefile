@@ -56,7 +56,10 @@ faults: .venv/.ready-dev
 bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/direct_step.py
 	$(BIN)/python benchmarks/ensemble_kernel.py
+	$(BIN)/python benchmarks/direct_ensemble.py
 	$(BIN)/python benchmarks/modes.py --eigsh
+	$(BIN)/python benchmarks/exact_statistics.py
+	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/memory.py
 
 docs: .venv/.ready-dev

@@ -1,80 +1,143 @@
-"""Rate of the ensemble kernel against DGEMM, and its memory, in one run.
+"""Rate of the ensemble kernel against DGEMM and against numpy, and its memory, in one run.
 
 1000 coupled runs of the container truck over the reference unit: 1000 modes, 4000 steps. Counted
 are the products that the method needs: contact rows and modal state 4 n_c each, points 12 n_p
 operations a mode, step and run; forming the maps and the free motion of the modes are not counted.
+
+The numpy peer steps all runs together too, a step at a time, as one would write it: arrays of
+modes by runs, a contact system of three wheels each step. It drives the first steps alone, and its
+accelerations must be the kernel's.
 """
 
+import argparse
 import json
 import resource
 import time
 
 import numpy as np
+from settings import dgemm_rate, rear_layout
 from threadpoolctl import ThreadpoolController
 
-import trundle as tr
-from trundle.simulate import Coupled, Crossing, Modal, lay_out, prepare
+from trundle.dynamics import ExactRecursion
 from trundle.simulate._roads import roads_under_wheels
 from trundle.simulate.ensemble import batch_size
-from trundle.study.mode_cache import modes_of
+from trundle.simulate.layout import _free_vehicles, _springs
 
 MODES, STEPS, RUNS, DT = 1000, 4000, 1000, 0.005
+PEER_STEPS = 200
 
 
-def dgemm_rate() -> float:
-    a = np.random.default_rng(0).standard_normal((2000, 2000))
-    a @ a
-    start = time.perf_counter()
-    for _ in range(4):
-        a @ a
-    return 4 * 2 * 2000**3 / (time.perf_counter() - start)
-
-
-def main() -> None:
-    floor = tr.structure.reference_unit(mesh_size=1.0)
-    modes = modes_of(floor, f_max=100.0)
-    method = Coupled(integration=Modal(f_max=float(modes.frequencies[MODES]) - 1e-9, dt=DT))
-    prepared = prepare(floor, method.integration, method.damping, modes=modes)
-    route = tr.route.Route.straight((0, 76.5), (52, 76.5), speed=15 / 3.6, name="rear")
-    crossing = Crossing(tr.vehicle.container_truck_40ft(), route, tr.road.RoadClass("B"))
-    layout = lay_out(
-        prepared, crossing, method=method, points={"p": (32.5, 62.5)}, duration=STEPS * DT
-    )
-    n_modes = prepared.modes.n_modes
-    del floor, modes, prepared  # a layout holds what it needs of them
-    before = dgemm_rate()
-    kernel = 0.0
-    start = time.perf_counter()
-    size = batch_size(layout)
+def kernel(layout) -> tuple[float, float]:
+    """Return the seconds of the kernel alone, and with the drawing of roads."""
+    spent, start, size = 0.0, time.perf_counter(), batch_size(layout)
     for first in range(0, RUNS, size):
         runs = range(first, min(first + size, RUNS))
         road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed=1)
         begun = time.perf_counter()
         layout.over(road)
-        kernel += time.perf_counter() - begun
-    whole = time.perf_counter() - start
+        spent += time.perf_counter() - begun
+    return spent, time.perf_counter() - start
+
+
+def numpy_steps(layout, road):
+    """Step all runs in plain numpy; return accelerations at the point, and seconds a step."""
+    springs, floor = _springs(layout.crossings), layout.floor
+    vehicle = ExactRecursion(_free_vehicles(layout.crossings), DT)
+    e, modal = springs.contact_map, floor.propagator
+    felt = np.hstack([springs.stiffness * e, springs.damping * e])
+    start_v, end_v = vehicle.from_start @ e.T, vehicle.from_end @ e.T
+    phi = modal.phi[..., None]
+    start, end = (g.T[..., None] for g in (modal.from_start, modal.from_end))
+    still = np.linalg.solve(springs.standing_stiffness, e.T @ (springs.stiffness * road.start))
+    z = np.vstack([still, 0 * still])
+    dynamic = -springs.stiffness * (e @ still - road.start)
+    n_run_in = layout.timeline.n_run_in
+    eye = np.eye(len(e))
+    for at in range(1, n_run_in + 1):
+        free = vehicle.phi @ z + start_v @ dynamic
+        dynamic = np.linalg.solve(eye + felt @ end_v, road.push[at] - felt @ free)
+        z = free + end_v @ dynamic
+    u = np.zeros((floor.n_modes, road.n_runs))
+    v, load = np.zeros_like(u), floor.loads(0, 1)[0]
+    read, found = floor.points[0], []
+    begun = time.perf_counter()
+    for step in range(1, PEER_STEPS + 1):
+        force = load.T @ (dynamic + springs.static)
+        uf = phi[:, 0, 0] * u + phi[:, 0, 1] * v - start[0] * force
+        vf = phi[:, 1, 0] * u + phi[:, 1, 1] * v - start[1] * force
+        load = floor.loads(step, step + 1)[0]
+        value, slope = (part[0] for part in floor.shapes(step, step + 1))
+        speed = floor.speed[step][:, None]
+        on_u = springs.stiffness * value + springs.damping * speed * slope
+        on_v = springs.damping * value
+        sink = (on_u * end[0].T + on_v * end[1].T) @ load.T
+        free = vehicle.phi @ z + start_v @ dynamic
+        push = road.push[n_run_in + step] + on_u @ uf + on_v @ vf - sink @ springs.static
+        dynamic = np.linalg.solve(eye + felt @ end_v + sink, push - felt @ free)
+        z = free + end_v @ dynamic
+        force = load.T @ (dynamic + springs.static)
+        u, v = uf - end[0] * force, vf - end[1] * force
+        held = modal.square[:, None] * u + modal.double[:, None] * v
+        found.append(-read @ (held + force))
+    return np.array(found), (time.perf_counter() - begun) / PEER_STEPS
+
+
+def peer() -> dict[str, float]:
+    layout = rear_layout(n_modes=MODES, dt=DT, duration=PEER_STEPS * DT, residual=False)
+    road = roads_under_wheels(layout.crossings, layout.timeline, range(RUNS), seed=1)
+    theirs, seconds = numpy_steps(layout, road)
+    ours = layout.over(road).acceleration[1:, 0]
+    return {
+        "numpy_step_ms": 1e3 * seconds,
+        "numpy_largest_difference": float(np.abs(theirs - ours).max() / np.abs(ours).max()),
+    }
+
+
+def single() -> dict[str, float]:
+    """Return the kernel's time in single precision, and how far it is from double."""
+    layouts = [
+        rear_layout(n_modes=MODES, dt=DT, duration=STEPS * DT, single=kind)
+        for kind in (False, True)
+    ]
+    road = roads_under_wheels(layouts[0].crossings, layouts[0].timeline, range(16), seed=1)
+    double, other = (layout.over(road).acceleration for layout in layouts)
+    return {
+        "single_kernel_s": kernel(layouts[1])[0],
+        "single_largest_difference": float(np.abs(other - double).max() / np.abs(double).max()),
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--no-numpy", action="store_true", help="leave the peer out")
+    options = parser.parse_args()
+    layout = rear_layout(n_modes=MODES, dt=DT, duration=STEPS * DT)
+    n_modes = layout.floor.n_modes
+    before = dgemm_rate()
+    alone, whole = kernel(layout)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6  # of the whole process
     dgemm = 0.5 * (before + dgemm_rate())
     on_floor = np.mean(
         [layout.floor.loads(i, i + 1).any(axis=(0, 2)).sum() for i in range(0, STEPS, 40)]
     )
     operations = (8 * on_floor + 12) * n_modes * STEPS * RUNS
-    blas = [pool["internal_api"] for pool in ThreadpoolController().info()]
-    print(
-        json.dumps(
-            {
-                "modes": n_modes,
-                "wheels_on_floor_mean": round(float(on_floor), 2),
-                "kernel_s": round(kernel, 2),
-                "kernel_and_roads_s": round(whole, 2),
-                "kernel_gflops": round(operations / kernel / 1e9, 1),
-                "dgemm_gflops": round(dgemm / 1e9, 1),
-                "kernel_over_dgemm": round(operations / kernel / dgemm, 3),
-                "resident_gb": round(memory, 2),
-                "blas": blas,
-            }
-        )
-    )
+    found = {
+        "modes": n_modes,
+        "wheels_on_floor_mean": float(on_floor),
+        "kernel_s": alone,
+        "kernel_and_roads_s": whole,
+        "kernel_gflops": operations / alone / 1e9,
+        "dgemm_gflops": dgemm / 1e9,
+        "kernel_over_dgemm": operations / alone / dgemm,
+        "resident_gb": memory,
+        "blas": [pool.get("architecture", "") for pool in ThreadpoolController().info()],
+    }
+    found |= single()
+    if not options.no_numpy:
+        found |= peer()
+        found["numpy_over_kernel"] = found["numpy_step_ms"] / (1e3 * alone / STEPS)
+    short = {k: float(f"{v:.4g}") if isinstance(v, float) else v for k, v in found.items()}
+    print(json.dumps(short))
 
 
 if __name__ == "__main__":

@@ -159,3 +159,18 @@ def test_smooth_road_and_ramp_make_no_variance():
     runs = next(batches(layout, runs=range(2), seed=1))
     mean = mean_response(layout)
     np.testing.assert_allclose(runs.velocity[1], mean.velocity, rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize("kind", [Coupled, Decoupled])
+def test_single_precision_keeps_four_digits(kind):
+    """Against double precision: round-off of 6e-8 times e^5, what a way back over a frame loses."""
+    floor = small_floor(mesh_size=2.0)
+    settings = {"points": POINTS, "n_runs": 3, "seed": 4, "duration": 3.1}
+    double, single = (
+        ensemble(floor, way(), method=kind(integration=step), **settings)
+        for step in (Modal(f_max=90.0, dt=0.005), Modal(f_max=90.0, dt=0.005, single=True))
+    )
+    for name in ("displacement", "velocity", "acceleration", "contact_forces"):
+        apart = difference(getattr(single, name), getattr(double, name))
+        assert 0.0 < apart < 1e-4 or (kind is Decoupled and name == "contact_forces")
+        assert getattr(single, name).dtype == np.float64

@@ -32,11 +32,14 @@ class Modal:
         Time step [s].
     residual : bool
         Add the static flexibility of the modes left out (True), or leave them out altogether.
+    single : bool
+        Carry the floor's state over the steps in single precision: faster, to some 1e-4.
     """
 
     f_max: float
     dt: float
     residual: bool = True
+    single: bool = False
 
     def __post_init__(self) -> None:
         """Check both numbers."""
@@ -45,6 +48,7 @@ class Modal:
     def __str__(self) -> str:
         """Describe the method for a report."""
         rest = "" if self.residual else "nothing for the modes above, "
+        rest += "single precision, " if self.single else ""
         return (
             f"modal superposition, modes below {self.f_max:g} Hz, {rest}exact recursion, "
             f"dt = {1e3 * self.dt:g} ms"

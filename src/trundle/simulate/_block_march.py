@@ -145,7 +145,8 @@ class _March:
         for part in self._slices:
             n_runs = len(self._weight[part])
             still = np.zeros((2 * floor.n_modes, n_runs))
-            self._x.append(still if forces is None else floor.static_state(forces[:, part]))
+            state = still if forces is None else floor.static_state(forces[:, part])
+            self._x.append(state.astype(floor.dtype, copy=False))
 
     def run_in(self) -> None:
         """Drive on rigid ground up to time 0."""
@@ -188,7 +189,9 @@ class _March:
                 lambda count: contact_block(None, None, self._vehicle, 0, count, springs=columns)
             )
             return lambda _, count: rigid(count)
-        powers = FloorPowers(floor.propagator, floor.points, self._length)
+        powers = FloorPowers(
+            floor.propagator, floor.points, self._length, single=floor.dtype == np.float32
+        )
         if solve:
             return lambda first, count: contact_block(
                 floor, powers, self._vehicle, first, count, springs=columns
@@ -239,10 +242,12 @@ class _March:
             given = forces[first : first + block.n_steps + 1, :, self._slices[number]]
             every = given.reshape(-1, given.shape[2])
         seen = self._work.product("seen", maps.point_rows, x)
-        seen += maps.points_by_forces @ every
+        seen = np.add(
+            seen, maps.points_by_forces @ every, out=seen if seen.dtype == every.dtype else None
+        )
         if maps.advance is not None:
-            _advance(maps.advance, x, self._work.array("advance", x.shape))
-        pressing = every[maps.standing]
+            _advance(maps.advance, x, self._work.array("advance", x.shape, x.dtype))
+        pressing = every[maps.standing].astype(x.dtype, copy=False)
         for top in range(0, len(x), _ROWS):  # what is added is still in cache
             part = slice(top, top + _ROWS)
             x[part] += self._work.product("state", maps.state_by_forces[part], pressing)
@@ -286,16 +291,16 @@ class _Work(threading.local):
     def __init__(self) -> None:
         self._room: dict[str, Array] = {}
 
-    def array(self, name: str, shape: tuple[int, int]) -> Array:
+    def array(self, name: str, shape: tuple[int, int], kind: np.dtype) -> Array:
         """Return room for an array; what was there under its name is lost."""
         size = shape[0] * shape[1]
         if name not in self._room or self._room[name].size < size:
-            self._room[name] = np.empty(size)
+            self._room[name] = np.empty(size, dtype=kind)
         return self._room[name][:size].reshape(shape)
 
     def product(self, name: str, a: Array, b: Array) -> Array:
         """Return a matrix product in the room of a name."""
-        return np.matmul(a, b, out=self.array(name, (a.shape[0], b.shape[1])))
+        return np.matmul(a, b, out=self.array(name, (a.shape[0], b.shape[1]), a.dtype))
 
 
 def block_length(n_contacts: int) -> int:

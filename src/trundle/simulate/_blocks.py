@@ -125,7 +125,7 @@ def contact_block(
         _add_residual(on_total, floor, first, stiffness, damping)
         standing = (np.arange(n_steps)[:, None] * n + on_floor).ravel()
         late = late.reshape(len(standing), 2 * floor.n_modes)
-        maps = _floor_maps(load, powers, first, late, on_floor=on_floor, n=n)
+        maps = _floor_maps(floor, load, powers, first, late, on_floor=on_floor)
     both = (on_total - vehicle.push_by_forces(n_steps)).reshape(n_steps * n, (n_steps + 1) * n)
     solve = np.linalg.inv(np.eye(n_steps * n) - both[:, n:])
     weight = on_total.reshape(n_steps * n, -1) @ np.tile(static, n_steps + 1)
@@ -150,30 +150,37 @@ def load_block(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int)
     none = np.zeros((0, 2 * floor.n_modes))
     on_floor = floor.on_floor(first, first + n_steps + 1)
     load = floor.loads(first, first + n_steps + 1, on_floor)
-    maps = _floor_maps(load, powers, first, none, on_floor=on_floor, n=floor.n_contacts)
+    maps = _floor_maps(floor, load, powers, first, none, on_floor=on_floor)
     return Block(n_steps=n_steps, contact=None, floor=maps)
 
 
 def _floor_maps(
-    load: Array, powers: FloorPowers, first: int, contact_rows: Array, *, on_floor: Array, n: int
+    floor: ModalFloor,
+    load: Array,
+    powers: FloorPowers,
+    first: int,
+    contact_rows: Array,
+    *,
+    on_floor: Array,
 ) -> FloorMaps:
     """Return how points and state follow from the state before and all forces.
 
-    `load` holds the modal loads of the contacts that stand on the floor, of n in all.
+    `load` holds the modal loads of the contacts that stand on the floor.
     """
-    n_steps, size = len(load) - 1, 2 * load.shape[2]
+    n_steps, size, n, kind = len(load) - 1, 2 * load.shape[2], floor.n_contacts, floor.dtype
     standing = (np.arange(n_steps + 1)[:, None] * n + on_floor).ravel()
     gains = powers.gains(first, n_steps)
     state_by_forces = -gains[:, None] * load[:, :, None]  # (steps + 1, c, 2, modes)
     point_rows = powers.points_by_state(first, n_steps)
     points_by_forces = np.zeros((len(point_rows), (n_steps + 1) * n))
     points_by_forces[:, standing] = _points_by_forces(powers, load)
+    advance = powers.advance(first, n_steps)
     return FloorMaps(
-        contact_rows=contact_rows,
-        point_rows=point_rows,
+        contact_rows=contact_rows.astype(kind, copy=False),
+        point_rows=point_rows.astype(kind, copy=False),
         points_by_forces=points_by_forces,
-        advance=powers.advance(first, n_steps),
-        state_by_forces=state_by_forces.reshape(len(standing), size).T,
+        advance=None if advance is None else advance.astype(kind, copy=False),
+        state_by_forces=state_by_forces.reshape(len(standing), size).T.astype(kind, copy=False),
         standing=standing,
     )
 

@@ -22,7 +22,8 @@ class ModalFloor:
     """A floor in its modal coordinates under the wheels of one crossing.
 
     Steps are those of the record; wheels, where they are and how much of their force the model
-    carries come from the rows of the contact operator.
+    carries come from the rows of the contact operator. `dtype` is that of the state that is carried
+    over the steps, and of the large maps that carry it.
     """
 
     def __init__(
@@ -34,7 +35,9 @@ class ModalFloor:
         points: SparseMatrix,
         *,
         flexibility: StaticFlexibility | None,
+        single: bool = False,
     ) -> None:
+        self.dtype = np.dtype(np.float32 if single else np.float64)
         self.propagator, self.dt = propagator, propagator.dt
         self.n_modes = modes.n_modes
         self.speed = speed

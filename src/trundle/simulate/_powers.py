@@ -10,6 +10,7 @@ from trundle.dynamics import ExactRecursion, ModalRecursion
 __all__ = ["FloorPowers", "VehiclePowers", "rows_on_state"]
 
 _MOST_DECAY = 9.0  # powers of e over a frame: the way back loses as many
+_MOST_DECAY_SINGLE = 5.0  # so that single precision keeps five digits
 _MOST_STEPS = 256  # in a frame
 _MOST_KEPT = 64e6  # bytes of point rows, which come back in every frame
 
@@ -21,12 +22,15 @@ class FloorPowers:
     later step is traced back to then. So modes advance once a frame, not at every block.
     """
 
-    def __init__(self, propagator: ModalRecursion, points: Array, n_steps: int) -> None:
+    def __init__(
+        self, propagator: ModalRecursion, points: Array, n_steps: int, *, single: bool = False
+    ) -> None:
         phi = propagator.phi.transpose(1, 2, 0)
         start, end = propagator.from_start.T, propagator.from_end.T
         gamma = np.einsum("abm,bm->am", phi, end) + start
         self.n_steps = n_steps
-        self.frame, goes_back = _frame_length(propagator, n_steps)
+        most = _MOST_DECAY_SINGLE if single else _MOST_DECAY
+        self.frame, goes_back = _frame_length(propagator, n_steps, most)
         powers = [np.broadcast_to(np.eye(2)[:, :, None], phi.shape)]
         for _ in range(self.frame):
             powers.append(np.einsum("abm,bcm->acm", phi, powers[-1]))
@@ -147,11 +151,11 @@ def rows_on_state(rows: Array, power: Array) -> Array:
     return out
 
 
-def _frame_length(propagator: ModalRecursion, n_steps: int) -> tuple[int, bool]:
+def _frame_length(propagator: ModalRecursion, n_steps: int, decays: float) -> tuple[int, bool]:
     """Return the steps of a frame, whole blocks, and whether one can go back over it."""
     slowest = np.abs(np.linalg.eigvals(propagator.phi)).min()
     decay = -np.log(slowest) if slowest > 0.0 else np.inf
-    most = min(_MOST_STEPS, _MOST_DECAY / max(decay, 1e-12))
+    most = min(_MOST_STEPS, decays / max(decay, 1e-12))
     return max(1, int(most // n_steps)) * n_steps, bool(most >= n_steps)
 
 

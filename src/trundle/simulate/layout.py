@@ -297,6 +297,7 @@ def _floor_under_wheels(
             speed,
             points,
             flexibility=prepared.flexibility if coupled and prepared.residual else None,
+            single=prepared.single,
         )
     return FullFloor(
         prepared.propagator,

@@ -60,6 +60,11 @@ class PreparedFloor:
         """Whether the modes left out answer statically."""
         return isinstance(self.integration, Modal) and self.integration.residual
 
+    @property
+    def single(self) -> bool:
+        """Whether steps are carried out in single precision."""
+        return isinstance(self.integration, Modal) and self.integration.single
+
 
 def prepare(
     floor: Floor,

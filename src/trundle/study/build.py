@@ -253,6 +253,16 @@ class _Builder:
                     )
                 )
                 return None
+            if section.precision == "single":
+                self.problems.append(
+                    Problem(
+                        place=f"{place}.precision",
+                        value="'single'",
+                        rule="direct integration is in double precision",
+                        remedy='remove precision, or set integration = "modal"',
+                    )
+                )
+                return None
             return Newmark(dt=section.dt)
         if section.f_max is None:
             self.problems.append(
@@ -264,7 +274,8 @@ class _Builder:
                 )
             )
             return None
-        return Modal(f_max=section.f_max, dt=section.dt)
+        single = section.precision == "single"
+        return Modal(f_max=section.f_max, dt=section.dt, single=single)
 
     def _band(self) -> tuple[RoughnessBand | None, bool]:
         section = self.file.tables.get("roughness")

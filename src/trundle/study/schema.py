@@ -231,6 +231,7 @@ class MethodSection(Section):
     interaction: Literal["decoupled", "coupled"]
     integration: Literal["modal", "newmark"] = "modal"
     f_max: Frequency | None = None
+    precision: Literal["double", "single"] = "double"
     dt: Time
     damping: DampingSection
     contact: Literal["smooth", "hat"] = "smooth"

@@ -1,5 +1,7 @@
 """Criteria against their published values, and the logic of a verdict."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -118,3 +120,103 @@ def test_a_quiet_peak_does_not_pass_beyond_what_was_computed():
     runs = sine_runs(5.0, 1e-9, f_max=20.0)
     verdict = assess(runs, find_criterion("electron-microscope-vertical"))[0]
     assert verdict.status == "not assessed"
+
+
+def at(name: str, f: float) -> float:
+    return float(find_criterion(name).limit(np.array([float(f)]))[0])
+
+
+def test_limits_of_equipment_and_people():
+    """Against the published numbers (criteria listed with their sources in the data files)."""
+    assert at("NIST-A", 1.0) == pytest.approx(2 * np.pi * 0.025e-6, rel=1e-3)
+    assert at("NIST-A", 10.0) == pytest.approx(2 * np.pi * 10 * 0.025e-6, rel=1e-3)
+    assert at("NIST-A", 50.0) == pytest.approx(3.1e-6)
+    assert [at("NIST-A1", f) for f in (10**0.5, 10**0.6, 80)] == pytest.approx(
+        [3e-6, 0.75e-6, 0.75e-6]
+    )
+    assert (at("VC-F", 10), at("VC-G", 10)) == pytest.approx((1.56e-6, 0.78e-6))
+    mri = {
+        1: 0.0040,
+        2: 0.0020,
+        5: 0.0013,
+        10: 0.0024,
+        16: 0.0090,
+        20: 0.0168,
+        25: 0.0316,
+        50: 0.0316,
+    }
+    assert [at("Siemens-MRI", f) for f in mri] == pytest.approx(list(mri.values()))
+    assert [at("Bruker-NMR", f) for f in (1, 10, 20, 40)] == pytest.approx(
+        [1.6e-6, 0.64e-6, 6.4e-6, 6.4e-6]
+    )
+    assert [at(f"DG11-{v}", 8.0) for v in (200, 100, 50, 25, 12, 6, 3)] == pytest.approx(
+        [200e-6, 100e-6, 50e-6, 25e-6, 12e-6, 6e-6, 3e-6]
+    )
+    limits = {
+        c.name: c.limits[0] for c in all_criteria() if c.quantity in {"vdv", "response_factor"}
+    }
+    assert limits["R-office"] == 4.0
+    assert limits["VDV-residential-day-low"] == 0.4
+    assert limits["VDV-residential-night-low"] == pytest.approx(0.5 * 0.4)
+    assert limits["VDV-office-low"] == pytest.approx(2 * 0.4)
+    assert limits["VDV-workshop-low"] == pytest.approx(4 * 0.4)
+
+
+def test_a_verdict_stands_band_by_band():
+    """80 um/s at 10 Hz: fails VC-A there, passes far bands, and is not assessed below 4 Hz."""
+    verdict = assess(sine_runs(10.0, 40e-6 * np.sqrt(2)), find_criterion("VC-A"), percentile=50.0)[
+        0
+    ]
+    bands = verdict.bands
+    status = dict(zip(np.round(bands.frequencies, 1), bands.statuses, strict=True))
+    assert (status[1.0], status[10.0], status[31.6]) == ("not assessed", "fail", "pass")
+    assert np.isnan(bands.limits[0])
+    assert bands.values[10] == pytest.approx(verdict.value)
+    assert 4.0 < verdict.time < 16.0  # the sine is steady in between
+
+
+def test_a_burst_has_its_time():
+    """A burst of 10 Hz about 12 s: the largest second lies there, whatever the filter's delay."""
+    runs = sine_runs(10.0, 1e-4, n_runs=2)
+    t = runs.time
+    burst = np.exp(-(((t - 12.0) / 0.4) ** 2)) * np.sin(2 * np.pi * 10 * t)
+    v = 1e-4 * np.broadcast_to(burst[None, :, None], (2, len(t), 1)).copy()
+    runs = dataclasses.replace(runs, velocity=v, acceleration=v, displacement=v)
+    assert assess(runs, find_criterion("VC-A"))[0].time == pytest.approx(12.0, abs=0.2)
+
+
+def test_what_lies_above_all_bands_is_not_passed():
+    """NIST-A reaches 100 Hz and levels to 80 Hz: a quiet floor is not assessed, a loud one fails."""
+    quiet = assess(sine_runs(10.0, 1e-12), find_criterion("NIST-A"))[0]
+    assert quiet.status == "not assessed"
+    assert quiet.unresolved == (100.0,)
+    assert assess(sine_runs(10.0, 1e-4), find_criterion("NIST-A"))[0].status == "fail"
+
+
+def test_acceleration_in_bands_and_on_lines():
+    """A 10 Hz sine of velocity amplitude V: 2 pi 10 V / sqrt 2 in its band, 2 pi 10 V on its line."""
+    runs = sine_runs(10.0, 1e-4, n_runs=1)
+    base = find_criterion("stepper-B")
+    for quantity, expected in (
+        ("band_rms_acceleration", 2 * np.pi * 10 * 1e-4 / np.sqrt(2)),
+        ("band_peak_acceleration", 2 * np.pi * 10 * 1e-4),
+        ("narrow_band_acceleration", 2 * np.pi * 10 * 1e-4),
+    ):
+        flat = {"frequencies": np.array([1.0, 80.0]), "limits": np.array([1e-3, 1e-3])}
+        verdict = assess(runs, dataclasses.replace(base, quantity=quantity, **flat))[0]
+        assert verdict.value == pytest.approx(expected, rel=0.01)
+        assert verdict.governing_band == pytest.approx(10.0, rel=0.01)
+        assert verdict.status == "fail"
+
+
+def test_response_factor_and_dose():
+    """8 Hz at 0.05 m/s2: R = 0.05 |Wb| / sqrt 2 / 0.005; the dose grows with the root of the root of n."""
+    runs = sine_runs(8.0, 0.05 / (2 * np.pi * 8), n_runs=1)
+    factor = assess(runs, find_criterion("R-office"))[0]
+    assert factor.value == pytest.approx(0.05 * 1.026 / np.sqrt(2) / 0.005, rel=0.01)
+    assert factor.status == "fail"
+    once, often = (
+        assess(runs, find_criterion("VDV-office-low"), events=n)[0].value for n in (1.0, 16.0)
+    )
+    assert often == pytest.approx(2.0 * once)
+    assert 0.05 * (0.375 * 12) ** 0.25 < once < 1.1 * 0.05 * (0.375 * 20) ** 0.25

@@ -155,6 +155,7 @@ def test_bands_are_resolved_up_to_their_upper_edge():
 def test_a_percentile_of_spectra_covers_that_share_of_runs():
     spectra = BandSpectra(
         mid_band=np.array([10.0]), values=np.arange(101.0)[:, None, None], averaging="event",
+        times=np.zeros((101, 1, 1)),
         resolved=np.array([True]), point_names=("p",),
     )  # fmt: skip
     assert spectra.percentile(95.0)[0, 0] == pytest.approx(95.0)

@@ -84,6 +84,8 @@ MISTAKES = [
     ("dt longer than the record", '"4 s"', '"20 ms"', ["method[1].dt", "10 steps"]),
     ("no f_max", 'f_max = "30 Hz"\n', "", ["method[1].f_max", "modes are kept"]),
     ("f_max with newmark", 'f_max =', 'integration = "newmark"\nf_max =', ["method[1].f_max", "no modes"]),
+    ("single precision with newmark", 'f_max = "30 Hz"', 'integration = "newmark"\nprecision = "single"', ["method[1].precision", "double precision"]),
+    ("no event", 'curves = ["VC-A"]', 'curves = ["VC-A"]\nevents = 0', ["criteria.events"]),
     ("ratio with newmark", 'f_max = "30 Hz"', 'integration = "newmark"', ["method[1].damping", "rayleigh_alpha"]),
     ("two dampings", 'ratio = "3 %"', 'ratio = "3 %", rayleigh_alpha = "1 1/s"', ["method[1].damping", "either a ratio or"]),
     ("no damping", 'ratio = "3 %"', "", ["method[1].damping", "nothing"]),

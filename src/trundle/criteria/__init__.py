@@ -1,17 +1,28 @@
 """Hold vibration criteria as data and responses against them."""
 
-from trundle.criteria.assess import Status, Verdict, assess, assess_spectra, best_class
-from trundle.criteria.curve import VC, Criterion, Quantity, all_criteria, find_criterion
+from trundle.criteria.assess import assess, assess_reduced, best_class, spectra_asked_for
+from trundle.criteria.curve import (
+    BY_FREQUENCY,
+    VC,
+    Criterion,
+    Quantity,
+    all_criteria,
+    find_criterion,
+)
+from trundle.criteria.verdict import BandOutcomes, Status, Verdict
 
 __all__ = [
+    "BY_FREQUENCY",
     "VC",
+    "BandOutcomes",
     "Criterion",
     "Quantity",
     "Status",
     "Verdict",
     "all_criteria",
     "assess",
-    "assess_spectra",
+    "assess_reduced",
     "best_class",
     "find_criterion",
+    "spectra_asked_for",
 ]

@@ -2,72 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import within
 from trundle._typing import Array
-from trundle.criteria.curve import Criterion
-from trundle.response import BandSpectra, velocity_spectra
-from trundle.signals import Averaging, nominal_frequency
+from trundle.criteria.curve import BY_FREQUENCY, Criterion
+from trundle.criteria.verdict import BandOutcomes, Status, Verdict
+from trundle.response import BandSpectra, Reduced, SpectrumQuantity, reduce_runs
+from trundle.signals import Averaging, mid_band_frequencies, nominal_frequency
 from trundle.simulate import Runs
 
-__all__ = ["Status", "Verdict", "assess", "assess_spectra", "best_class"]
+__all__ = ["assess", "assess_reduced", "best_class", "spectra_asked_for"]
 
-Status: TypeAlias = Literal["pass", "fail", "not assessed"]
-"""Outcome of a comparison. What was not computed is never a pass."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Verdict:
-    """Hold the outcome of one criterion at one point.
-
-    Attributes
-    ----------
-    criterion : Criterion
-        The curve.
-    point : str
-        Name of the point.
-    status : {"pass", "fail", "not assessed"}
-        ``fail`` where any value exceeds its limit; ``pass`` where all bands of the curve
-        were computed and none does; ``not assessed`` otherwise.
-    percentile : float
-        Share of runs that the compared value covers, 0 to 100.
-    unresolved : tuple of float
-        Nominal frequencies of bands in the curve's range that were not computed [Hz].
-    averaging : str
-        Averaging rule of the value.
-    margin : float
-        Smallest limit over value in the bands computed; below 1 fails. This and the rest are
-        NaN where nothing was computed.
-    governing_band : float
-        Mid-band frequency where the margin is smallest [Hz]; NaN for peak values.
-    value, limit : float
-        Value and limit there [m/s] or [m/s2].
-    share_exceeding : float
-        Share of the runs that exceed the limit in any band, 0 to 1.
-    """
-
-    criterion: Criterion
-    point: str
-    status: Status
-    percentile: float
-    unresolved: tuple[float, ...]
-    averaging: str
-    margin: float = np.nan
-    governing_band: float = np.nan
-    value: float = np.nan
-    limit: float = np.nan
-    share_exceeding: float = np.nan
-
-    def __str__(self) -> str:
-        """State the verdict in one line."""
-        at = "" if np.isnan(self.governing_band) else f" at {self.governing_band:.3g} Hz"
-        return f"{self.point}, {self.criterion.title}: {self.status}, margin {self.margin:.2f}{at}"
+_TOP = 80.0  # Hz: how far single numbers are asked to reach
+_ABOVE = mid_band_frequencies(20, 23)  # bands beyond those computed, to 200 Hz
 
 
 def assess(
@@ -76,6 +27,7 @@ def assess(
     *,
     percentile: float = 95.0,
     averaging: Averaging = "max_1s",
+    events: float = 1.0,
 ) -> tuple[Verdict, ...]:
     """Hold every point of an ensemble against every criterion.
 
@@ -89,55 +41,68 @@ def assess(
         Share of runs that the compared level must cover, 0 to 100.
     averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of band levels.
+    events : float
+        How many such events a vibration dose is for.
 
     Returns
     -------
     tuple of Verdict
         By point, then by criterion.
     """
-    spectra = velocity_spectra(runs, averaging=averaging)
-    return assess_spectra(
-        spectra,
-        runs.peak_acceleration(),
-        criteria,
+    many = (criteria,) if isinstance(criteria, Criterion) else tuple(criteria)
+    return assess_reduced(
+        reduce_runs(runs, averaging=averaging, quantities=spectra_asked_for(many)),
+        many,
         percentile=percentile,
         top=min(runs.f_max, runs.sampling_frequency / 2.5),
+        events=events,
     )
 
 
-def assess_spectra(
-    spectra: BandSpectra,
-    peak_acceleration: Float[Array, "runs points"],
+def spectra_asked_for(criteria: Iterable[Criterion]) -> tuple[SpectrumQuantity, ...]:
+    """Return the spectra that criteria need, each once."""
+    names = (c.quantity for c in criteria)
+    found = (n for n in names if n not in {"peak_acceleration", "response_factor", "vdv"})
+    return tuple(dict.fromkeys(found))  # pyright: ignore[reportReturnType] - what is left are spectra
+
+
+def assess_reduced(
+    reduced: Reduced,
     criteria: Criterion | Sequence[Criterion],
     *,
     percentile: float,
     top: float,
+    events: float = 1.0,
 ) -> tuple[Verdict, ...]:
-    """Hold band levels and peaks against criteria.
+    """Hold what was kept of every run against criteria.
 
     Parameters
     ----------
-    spectra : BandSpectra
-        Velocity levels.
-    peak_acceleration : ndarray of float, shape (n_runs, n_points)
-        Largest absolute acceleration of each run [m/s2].
+    reduced : Reduced
+        Levels and peaks of every run; with the spectra that the criteria need.
     criteria : Criterion or sequence of Criterion
         The curves.
     percentile : float
         Share of runs that the compared level must cover, 0 to 100.
     top : float
-        Highest frequency that the peak accelerations contain [Hz].
+        Highest frequency that single numbers contain [Hz].
+    events : float
+        How many such events a vibration dose is for.
     """
     within("percentile", percentile, 0.0, 100.0)
     many = (criteria,) if isinstance(criteria, Criterion) else tuple(criteria)
     verdicts = []
-    for i, point in enumerate(spectra.point_names):
+    for i, point in enumerate(reduced.spectra.point_names):
         for criterion in many:
-            if criterion.quantity == "band_rms_velocity":
-                verdicts.append(_by_band(spectra, i, point, criterion, percentile))
+            if criterion.axis == "horizontal":
+                verdicts.append(_not_computed(criterion, point, percentile))
+            elif criterion.quantity in BY_FREQUENCY:
+                spectra = {"band_rms_velocity": reduced.spectra, **reduced.more}
+                one = spectra[criterion.quantity]
+                verdicts.append(_by_band(one, i, point, criterion, percentile))
             else:
-                peaks = peak_acceleration[:, i]
-                verdicts.append(_by_peak(peaks, point, criterion, percentile, top))
+                values, times = _numbers(reduced, i, criterion, events)
+                verdicts.append(_by_number(values, times, point, criterion, percentile, top=top))
     return tuple(verdicts)
 
 
@@ -147,6 +112,31 @@ def best_class(verdicts: Sequence[Verdict]) -> str:
     return passed[-1] if passed else "none"
 
 
+def _not_computed(criterion: Criterion, point: str, percentile: float) -> Verdict:
+    """Return the verdict on horizontal motion, of which nothing is known."""
+    return Verdict(
+        criterion=criterion,
+        point=point,
+        status="not assessed",
+        percentile=percentile,
+        unresolved=(),
+        averaging=criterion.averaging,
+    )
+
+
+def _numbers(
+    reduced: Reduced, point: int, criterion: Criterion, events: float
+) -> tuple[Array, Array]:
+    """Return a single number of every run, and when it occurred."""
+    if criterion.quantity == "peak_acceleration":
+        return reduced.peak_acceleration[:, point], reduced.peak_time[:, point]
+    if criterion.quantity == "vdv":
+        values = events**0.25 * reduced.vdv[:, point]
+    else:
+        values = reduced.response_factor[:, point]
+    return values, np.full_like(values, np.nan)
+
+
 def _by_band(
     spectra: BandSpectra, point: int, name: str, criterion: Criterion, percentile: float
 ) -> Verdict:
@@ -154,7 +144,11 @@ def _by_band(
     asked = np.isfinite(limits)
     usable = asked & spectra.resolved
     values = spectra.values[:, point]
-    missing = tuple(nominal_frequency(f) for f in spectra.mid_band[asked & ~spectra.resolved])
+    missing = _missing(spectra, criterion, asked)
+    level = np.full(len(limits), np.nan)
+    known = spectra.resolved
+    level[known] = np.percentile(values[:, known], percentile, axis=0)
+    outcomes = _outcomes(spectra, level, np.where(asked, limits, np.nan), usable)
     if not usable.any():
         return Verdict(
             criterion=criterion,
@@ -163,15 +157,17 @@ def _by_band(
             percentile=percentile,
             unresolved=missing,
             averaging=spectra.averaging,
+            bands=outcomes,
         )
-    level = np.percentile(values[:, usable], percentile, axis=0)
-    margins = limits[usable] / np.maximum(level, np.finfo(float).tiny)
-    worst = int(margins.argmin())
+    margins = limits[usable] / np.maximum(level[usable], np.finfo(float).tiny)
+    worst = int(np.flatnonzero(usable)[margins.argmin()])
+    margin = float(margins.min())
     exceeding = float((values[:, usable] > limits[usable]).any(axis=1).mean())
-    if margins[worst] < 1.0:
+    if margin < 1.0:
         status: Status = "fail"
     else:
         status = "not assessed" if missing else "pass"
+    nearest = int(np.abs(values[:, worst] - level[worst]).argmin())
     return Verdict(
         criterion=criterion,
         point=name,
@@ -179,31 +175,48 @@ def _by_band(
         percentile=percentile,
         unresolved=missing,
         averaging=spectra.averaging,
-        margin=float(margins[worst]),
-        governing_band=float(spectra.mid_band[usable][worst]),
+        margin=margin,
+        governing_band=float(spectra.mid_band[worst]),
         value=float(level[worst]),
-        limit=float(limits[usable][worst]),
+        limit=float(limits[worst]),
         share_exceeding=exceeding,
+        time=float(spectra.times[nearest, point, worst]),
+        bands=outcomes,
     )
 
 
-def _by_peak(
-    peaks: Float[Array, " runs"], point: str, criterion: Criterion, percentile: float, top: float
+def _missing(spectra: BandSpectra, criterion: Criterion, asked: Array) -> tuple[float, ...]:
+    """Return nominal frequencies that the curve asks for and nobody computed."""
+    lost = spectra.mid_band[asked & ~spectra.resolved]
+    if spectra.quantity == "narrow_band_acceleration":
+        return tuple(float(f) for f in lost)
+    beyond = _ABOVE[np.isfinite(criterion.limit(_ABOVE))]
+    return tuple(nominal_frequency(f) for f in (*lost, *beyond))
+
+
+def _outcomes(spectra: BandSpectra, level: Array, limits: Array, usable: Array) -> BandOutcomes:
+    statuses: list[Status] = []
+    for value, limit, known in zip(level, limits, usable, strict=True):
+        statuses.append("not assessed" if not known else "fail" if value > limit else "pass")
+    return BandOutcomes(
+        frequencies=spectra.mid_band, values=level, limits=limits, statuses=tuple(statuses)
+    )
+
+
+def _by_number(
+    values: Float[Array, " runs"],
+    times: Float[Array, " runs"],
+    point: str,
+    criterion: Criterion,
+    percentile: float,
+    *,
+    top: float,
 ) -> Verdict:
-    if criterion.axis == "horizontal":
-        return Verdict(
-            criterion=criterion,
-            point=point,
-            status="not assessed",
-            percentile=percentile,
-            unresolved=(),
-            averaging="peak",
-        )
     limit = float(criterion.limits[0])
-    value = float(np.percentile(peaks, percentile))
+    value = float(np.percentile(values, percentile))
     margin = limit / max(value, np.finfo(float).tiny)
-    # A broadband peak covers the curve only as far as the computation reaches.
-    reach = min(criterion.frequencies[-1], 80.0)
+    # A broadband number covers the curve only as far as the computation reaches.
+    reach = min(criterion.frequencies[-1], _TOP)
     missing = () if top >= reach * (1 - 1e-6) else (float(reach),)
     status: Status = "fail" if margin < 1.0 else ("not assessed" if missing else "pass")
     return Verdict(
@@ -212,9 +225,10 @@ def _by_peak(
         status=status,
         percentile=percentile,
         unresolved=missing,
-        averaging="peak",
+        averaging=criterion.averaging,
         margin=margin,
         value=value,
         limit=limit,
-        share_exceeding=float((peaks > limit).mean()),
+        share_exceeding=float((values > limit).mean()),
+        time=float(times[np.abs(values - value).argmin()]),
     )

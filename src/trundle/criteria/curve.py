@@ -7,21 +7,28 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 from importlib import resources
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from jaxtyping import Float
 
-from trundle._checks import frozen_array, set_frozen
+from trundle._checks import frozen_array, one_of, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.response import SpectrumQuantity
 
-__all__ = ["VC", "Criterion", "Quantity", "all_criteria", "find_criterion"]
+__all__ = ["BY_FREQUENCY", "VC", "Criterion", "Quantity", "all_criteria", "find_criterion"]
 
-Quantity: TypeAlias = Literal["band_rms_velocity", "peak_acceleration"]
-"""What a curve limits: RMS velocity in one-third-octave bands, or 0-peak acceleration."""
+Quantity: TypeAlias = SpectrumQuantity | Literal["peak_acceleration", "response_factor", "vdv"]
+"""What a curve limits: RMS velocity, acceleration or displacement in one-third-octave bands;
+0-peak acceleration in such a band, on lines of 1 Hz, or of the whole signal; the response factor
+of a person; the vibration dose value."""
 
-_FILES = ("vc.toml", "acceleration.toml")
+BY_FREQUENCY: tuple[str, ...] = get_args(SpectrumQuantity)
+"""Quantities that have a value at each frequency; the others are single numbers."""
+
+_SINGLE = ("peak_acceleration", "response_factor", "vdv")
+_FILES = ("vc.toml", "acceleration.toml", "equipment.toml", "people.toml")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -32,12 +39,12 @@ class Criterion:
     ----------
     name, title : str
         Short name for study files, and title for reports.
-    quantity : {"band_rms_velocity", "peak_acceleration"}
+    quantity : Quantity
         What it limits.
     frequencies : ndarray of float, shape (n_points,)
         Corner frequencies, rising [Hz].
     limits : ndarray of float, shape (n_points,)
-        Limits there [m/s] or [m/s2]; straight between corners on log-log axes.
+        Limits there in SI units; straight between corners on log-log axes.
     axis : str
         Direction that it is meant for.
     averaging : str
@@ -65,6 +72,7 @@ class Criterion:
         if len(frequencies) < 2 or np.any(np.diff(frequencies) <= 0.0):
             raise InputError(f"criterion {self.name!r}: frequencies must rise")
         frequencies.setflags(write=False)
+        one_of("quantity", self.quantity, (*BY_FREQUENCY, *_SINGLE))
         limits = frozen_array("limits", self.limits, shape=frequencies.shape)
         if np.any(limits <= 0.0):
             raise InputError(f"criterion {self.name!r}: limits must be greater than 0")
@@ -100,8 +108,15 @@ def all_criteria() -> tuple[Criterion, ...]:
     return tuple(curve for name in _FILES for curve in _read(name))
 
 
-def find_criterion(name: str) -> Criterion:
+def find_criterion(name: str, own: Iterable[Criterion] = ()) -> Criterion:
     """Return a criterion by name or alias, in any case.
+
+    Parameters
+    ----------
+    name : str
+        Name or alias.
+    own : iterable of Criterion
+        The user's own criteria; they come before those that ship with trundle.
 
     Raises
     ------
@@ -109,10 +124,11 @@ def find_criterion(name: str) -> Criterion:
         No such criterion; the message lists what there is.
     """
     wanted = name.strip().lower()
-    for criterion in all_criteria():
+    every = (*own, *all_criteria())
+    for criterion in every:
         if wanted in {known.lower() for known in (criterion.name, *criterion.aliases)}:
             return criterion
-    known = ", ".join(criterion.name for criterion in all_criteria())
+    known = ", ".join(criterion.name for criterion in every)
     raise InputError(f"no criterion {name!r}; there are {known}")
 
 

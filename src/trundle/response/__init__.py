@@ -1,6 +1,7 @@
 """Reduce histories to spectra, percentiles, bounds and exact statistics."""
 
 from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
+from trundle.response.isolated import behind_isolators
 from trundle.response.peaks import Process, peak_levels
 from trundle.response.reduction import (
     Reduced,
@@ -9,7 +10,12 @@ from trundle.response.reduction import (
     reduce_rougher,
     reduce_runs,
 )
-from trundle.response.spectra import BandSpectra, velocity_spectra
+from trundle.response.spectra import (
+    BandSpectra,
+    SpectrumQuantity,
+    spectra_of,
+    velocity_spectra,
+)
 from trundle.response.statistics import ExactStatistics, exact_statistics
 
 __all__ = [
@@ -17,7 +23,9 @@ __all__ = [
     "ExactStatistics",
     "Process",
     "Reduced",
+    "SpectrumQuantity",
     "UpperBounds",
+    "behind_isolators",
     "exact_statistics",
     "join",
     "peak_levels",
@@ -25,6 +33,7 @@ __all__ = [
     "percentile_rank",
     "reduce_rougher",
     "reduce_runs",
+    "spectra_of",
     "upper_bounds",
     "velocity_spectra",
 ]

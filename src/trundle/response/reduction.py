@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -11,8 +11,13 @@ from scipy import stats
 
 from trundle._checks import within
 from trundle._typing import Array, ArrayLike
-from trundle.response.spectra import BandSpectra, velocity_spectra
-from trundle.signals import Averaging
+from trundle.response.spectra import (
+    BandSpectra,
+    SpectrumQuantity,
+    spectra_of,
+    velocity_spectra,
+)
+from trundle.signals import Averaging, mtvv, response_factor, vibration_dose_value, weight
 from trundle.simulate import MeanResponse, Runs
 
 __all__ = ["Reduced", "join", "percentile_interval", "reduce_rougher", "reduce_runs"]
@@ -32,6 +37,12 @@ class Reduced:
         RMS velocity over the record [m/s].
     spectra : BandSpectra
         One-third-octave velocity levels [m/s].
+    more : mapping of str to BandSpectra
+        Other spectra that were asked for, by their quantity.
+    response_factor : ndarray of float, shape (n_runs, n_points)
+        Largest 1 s RMS of acceleration weighted by Wb, over 0.005 m/s2.
+    vdv : ndarray of float, shape (n_runs, n_points)
+        Vibration dose value of one event, weighted by Wb [m/s^1.75].
     peak_contact_force : ndarray of float, shape (n_runs, n_contacts)
         Largest contact force, static load included [N].
     tension : ndarray of bool, shape (n_runs, n_contacts)
@@ -42,11 +53,16 @@ class Reduced:
     peak_time: Float[Array, "runs points"]
     rms_velocity: Float[Array, "runs points"]
     spectra: BandSpectra
+    more: Mapping[SpectrumQuantity, BandSpectra]
+    response_factor: Float[Array, "runs points"]
+    vdv: Float[Array, "runs points"]
     peak_contact_force: Float[Array, "runs contacts"]
     tension: Bool[Array, "runs contacts"]
 
 
-def reduce_runs(runs: Runs, *, averaging: Averaging = "max_1s") -> Reduced:
+def reduce_runs(
+    runs: Runs, *, averaging: Averaging = "max_1s", quantities: Iterable[SpectrumQuantity] = ()
+) -> Reduced:
     """Reduce the histories of some runs.
 
     Parameters
@@ -55,20 +71,33 @@ def reduce_runs(runs: Runs, *, averaging: Averaging = "max_1s") -> Reduced:
         Runs with histories.
     averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of the band levels.
+    quantities : iterable of SpectrumQuantity
+        Spectra wanted beside that of velocity.
     """
     size = np.abs(runs.acceleration)
+    fs = runs.sampling_frequency
+    felt = weight(np.moveaxis(runs.acceleration, 1, -1), fs, "Wb")
+    wanted = [name for name in dict.fromkeys(quantities) if name != "band_rms_velocity"]
     return Reduced(
         peak_acceleration=size.max(axis=1),
         peak_time=runs.time[size.argmax(axis=1)],
         rms_velocity=runs.record_rms_velocity(),
         spectra=velocity_spectra(runs, averaging=averaging),
+        more={name: spectra_of(runs, name, averaging=averaging) for name in wanted},
+        response_factor=response_factor(mtvv(felt, fs)),
+        vdv=vibration_dose_value(felt, fs),
         peak_contact_force=runs.contact_forces.max(axis=1),
         tension=np.any(runs.contact_forces < 0.0, axis=1),
     )
 
 
 def reduce_rougher(
-    runs: Runs, mean: MeanResponse, factors: Sequence[float], *, averaging: Averaging = "max_1s"
+    runs: Runs,
+    mean: MeanResponse,
+    factors: Sequence[float],
+    *,
+    averaging: Averaging = "max_1s",
+    quantities: Iterable[SpectrumQuantity] = (),
 ) -> list[Reduced]:
     """Reduce some runs as they are on roads of other roughness.
 
@@ -82,6 +111,8 @@ def reduce_rougher(
         How many times larger the elevations are on each road.
     averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of the band levels.
+    quantities : iterable of SpectrumQuantity
+        Spectra wanted beside that of velocity.
 
     Returns
     -------
@@ -92,26 +123,32 @@ def reduce_rougher(
     for start in range(0, runs.n_runs, _TOGETHER):
         some = runs.part(slice(start, start + _TOGETHER))
         for kept, factor in zip(found, factors, strict=True):
-            kept.append(reduce_runs(some.rougher(mean, factor), averaging=averaging))
+            rougher = some.rougher(mean, factor)
+            kept.append(reduce_runs(rougher, averaging=averaging, quantities=quantities))
     return [join(parts) for parts in found]
 
 
 def join(parts: Sequence[Reduced]) -> Reduced:
     """Put the runs of several parts behind each other."""
-    first = parts[0].spectra
+    first = parts[0]
     return Reduced(
         peak_acceleration=_stack(parts, "peak_acceleration"),
         peak_time=_stack(parts, "peak_time"),
         rms_velocity=_stack(parts, "rms_velocity"),
-        spectra=BandSpectra(
-            mid_band=first.mid_band,
-            values=np.concatenate([part.spectra.values for part in parts]),
-            resolved=first.resolved,
-            averaging=first.averaging,
-            point_names=first.point_names,
-        ),
+        spectra=_join_spectra([part.spectra for part in parts]),
+        more={name: _join_spectra([part.more[name] for part in parts]) for name in first.more},
+        response_factor=_stack(parts, "response_factor"),
+        vdv=_stack(parts, "vdv"),
         peak_contact_force=_stack(parts, "peak_contact_force"),
         tension=_stack(parts, "tension"),
+    )
+
+
+def _join_spectra(parts: Sequence[BandSpectra]) -> BandSpectra:
+    return replace(
+        parts[0],
+        values=np.concatenate([part.values for part in parts]),
+        times=np.concatenate([part.times for part in parts]),
     )
 
 

@@ -3,28 +3,67 @@
 from trundle.signals.bands import (
     HIGHEST_BAND,
     LOWEST_BAND,
+    band_delay,
     band_edges,
     band_filter,
     filter_bands,
+    filter_zero_phase,
     mid_band_frequencies,
     nominal_frequency,
     usable_bands,
 )
-from trundle.signals.levels import Averaging, averaged_rms, band_levels, running_rms
-from trundle.signals.psd import welch_psd
+from trundle.signals.isolation import Isolation, Isolator, TransmissibilityTable, behind
+from trundle.signals.levels import (
+    Averaging,
+    averaged_rms,
+    band_levels,
+    band_maxima,
+    band_peaks,
+    level_scatter,
+    running_rms,
+)
+from trundle.signals.psd import amplitude_spectrum, welch_psd
+from trundle.signals.weighting import (
+    BASE_ACCELERATION,
+    Weighting,
+    crest_factor,
+    mtvv,
+    response_factor,
+    vibration_dose_value,
+    weight,
+    weighting_response,
+)
 
 __all__ = [
+    "BASE_ACCELERATION",
     "HIGHEST_BAND",
     "LOWEST_BAND",
     "Averaging",
+    "Isolation",
+    "Isolator",
+    "TransmissibilityTable",
+    "Weighting",
+    "amplitude_spectrum",
     "averaged_rms",
+    "band_delay",
     "band_edges",
     "band_filter",
     "band_levels",
+    "band_maxima",
+    "band_peaks",
+    "behind",
+    "crest_factor",
     "filter_bands",
+    "filter_zero_phase",
+    "level_scatter",
     "mid_band_frequencies",
+    "mtvv",
     "nominal_frequency",
+    "response_factor",
     "running_rms",
     "usable_bands",
+    "vibration_dose_value",
+    "weight",
+    "weighting_response",
     "welch_psd",
 ]

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy import signal
+from scipy import fft, signal
 
 from trundle._checks import positive
 from trundle._typing import Array
@@ -15,9 +15,11 @@ from trundle.errors import InputError
 __all__ = [
     "HIGHEST_BAND",
     "LOWEST_BAND",
+    "band_delay",
     "band_edges",
     "band_filter",
     "filter_bands",
+    "filter_zero_phase",
     "mid_band_frequencies",
     "nominal_frequency",
     "usable_bands",
@@ -94,3 +96,38 @@ def filter_bands(
     return np.stack(
         [signal.sosfilt(band_filter(f, sampling_frequency), samples, axis=-1) for f in mid_band]
     )
+
+
+@lru_cache(maxsize=256)
+def band_delay(mid_band: float, sampling_frequency: float) -> float:
+    """Return the delay of a band's causal filter at its mid-band frequency [s]."""
+    nearby = mid_band * np.array([1.0 - 1e-4, 1.0 + 1e-4])
+    sos = band_filter(mid_band, sampling_frequency)
+    _, response = signal.freqz_sos(sos, worN=nearby, fs=sampling_frequency)
+    turn = float(np.angle(response[1] / response[0]))
+    return -turn / (2.0 * np.pi * (nearby[1] - nearby[0]))
+
+
+def filter_zero_phase(
+    sos: Float[Array, "sections 6"], samples: Float[Array, "... steps"], *, padding: int
+) -> Float[Array, "... steps"]:
+    """Filter without delay, with the magnitude of a causal filter: the energy is the same.
+
+    Filtering forwards and backwards would apply that magnitude twice.
+
+    Parameters
+    ----------
+    sos : ndarray of float, shape (n_sections, 6)
+        Second-order sections.
+    samples : ndarray of float, shape (..., n_steps)
+        Signals.
+    padding : int
+        Samples of rest put before and behind the record while it is filtered.
+    """
+    n = samples.shape[-1]
+    size = fft.next_fast_len(n + 2 * padding, real=True)
+    turns = np.exp(-2j * np.pi * np.arange(size // 2 + 1) / size)[:, None] ** np.arange(3)
+    sections = (turns @ sos[:, :3].T) / (turns @ sos[:, 3:].T)
+    magnitude = np.abs(np.prod(sections, axis=1))
+    spectrum = fft.rfft(samples, size, axis=-1) * magnitude
+    return np.asarray(fft.irfft(spectrum, size, axis=-1)[..., :n])

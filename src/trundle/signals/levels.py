@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -13,9 +12,17 @@ from scipy import signal
 from trundle._checks import one_of, positive
 from trundle._threads import n_threads
 from trundle._typing import Array
-from trundle.signals.bands import band_filter
+from trundle.signals.bands import band_delay, band_edges, band_filter, filter_zero_phase
 
-__all__ = ["Averaging", "averaged_rms", "band_levels", "running_rms"]
+__all__ = [
+    "Averaging",
+    "averaged_rms",
+    "band_levels",
+    "band_maxima",
+    "band_peaks",
+    "level_scatter",
+    "running_rms",
+]
 
 Averaging: TypeAlias = Literal["max_1s", "slow", "fast", "event"]
 """How a band's RMS is taken over time: the largest 1 s linear average, the largest
@@ -24,6 +31,7 @@ over the whole event."""
 
 _WINDOW = 1.0  # s
 _TIME_CONSTANT = {"slow": 1.0, "fast": 0.125}  # s, IEC 61672-1
+_PERIODS = 8.0  # of a band's mid-frequency, that its filter is given to ring out
 
 
 def running_rms(
@@ -59,15 +67,28 @@ def averaged_rms(
     averaging : {"max_1s", "slow", "fast", "event"}
         Rule, see `Averaging`.
     """
+    return _largest(samples, sampling_frequency, averaging)[0]
+
+
+def _largest(
+    samples: Array, sampling_frequency: float, averaging: Averaging
+) -> tuple[Array, Array]:
+    """Return the RMS by a rule, and the middle of the time that it is taken over [s]."""
     one_of("averaging", averaging, get_args(Averaging))
     if averaging == "event":
-        return np.sqrt(np.mean(samples**2, axis=-1))
+        rms = np.asarray(np.sqrt(np.mean(samples**2, axis=-1)))
+        return rms, np.full_like(rms, np.nan)
     if averaging == "max_1s":
         width = max(1, round(_WINDOW * sampling_frequency))
-        return np.sqrt(_energy(samples, width).max(axis=-1) / width)
-    decay = np.exp(-1.0 / (_TIME_CONSTANT[averaging] * sampling_frequency))
-    weighted = signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1)
-    return np.sqrt(weighted.max(axis=-1))
+        mean_square, back = _energy(samples, width) / width, 0.5 * _WINDOW
+    else:
+        back = _TIME_CONSTANT[averaging]
+        decay = np.exp(-1.0 / (back * sampling_frequency))
+        mean_square = signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1)
+    at = np.asarray(mean_square.argmax(axis=-1))
+    largest = np.take_along_axis(mean_square, at[..., None], axis=-1)[..., 0]
+    when = np.asarray(np.maximum(at / sampling_frequency - back, 0.0))
+    return np.asarray(np.sqrt(largest)), when
 
 
 def band_levels(
@@ -76,33 +97,118 @@ def band_levels(
     mid_band: Float[Array, " bands"],
     *,
     averaging: Averaging = "max_1s",
+    zero_phase: bool = False,
 ) -> Float[Array, "bands ..."]:
     """Return the RMS of each signal in each one-third-octave band.
 
     The signal must start near rest. Except for ``event``, which averages over the record
-    alone, the filters ring on into a second that fades out the record's end; a sudden end
-    would be a broadband event of its own.
+    alone, the filters ring on behind the record for a second that fades out its end (a sudden end
+    would be a broadband event of its own), and until 8 periods of the band have gone.
     """
-    if averaging != "event":
-        samples = _faded_out(samples, round(_WINDOW * sampling_frequency))
+    return band_maxima(
+        samples, sampling_frequency, mid_band, averaging=averaging, zero_phase=zero_phase
+    )[0]
 
-    level = partial(_band_level, samples, sampling_frequency, averaging)
+
+def band_maxima(
+    samples: Float[Array, "... steps"],
+    sampling_frequency: float,
+    mid_band: Float[Array, " bands"],
+    *,
+    averaging: Averaging = "max_1s",
+    zero_phase: bool = False,
+) -> tuple[Float[Array, "bands ..."], Float[Array, "bands ..."]]:
+    """Return band levels as `band_levels` does, and when they occur.
+
+    Parameters
+    ----------
+    samples : ndarray of float, shape (..., n_steps)
+        Signals in time, near rest at their start.
+    sampling_frequency : float
+        Samples per second [Hz].
+    mid_band : ndarray of float, shape (n_bands,)
+        Exact mid-band frequencies [Hz].
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Rule, see `Averaging`.
+    zero_phase : bool
+        Filter without delay: by the magnitude of the same filter, so that energy is the same.
+
+    Returns
+    -------
+    levels : ndarray of float, shape (n_bands, ...)
+        RMS values.
+    times : ndarray of float, shape (n_bands, ...)
+        Middle of the averaging time of the largest one, the filter's delay taken off [s]; NaN for
+        ``event``, which has no largest one.
+    """
+
+    def level(f: float) -> tuple[Array, Array]:
+        signal_and_tail = samples
+        if averaging != "event":
+            ringing = max(_WINDOW, _PERIODS / f)
+            signal_and_tail = _faded_out(samples, sampling_frequency, ringing)
+        filtered = _filtered(signal_and_tail, sampling_frequency, f, zero_phase=zero_phase)
+        rms, when = _largest(filtered, sampling_frequency, averaging)
+        delay = 0.0 if zero_phase else band_delay(f, sampling_frequency)
+        return rms, np.asarray(np.maximum(when - delay, 0.0))
+
     with ThreadPoolExecutor(n_threads()) as pool:
-        return np.stack(list(pool.map(level, mid_band)))
+        found = list(pool.map(level, mid_band))
+    return np.stack([rms for rms, _ in found]), np.stack([when for _, when in found])
 
 
-def _band_level(
-    samples: Array, sampling_frequency: float, averaging: Averaging, mid_band: float
-) -> Array:
-    sos = band_filter(mid_band, sampling_frequency)
-    filtered = signal.sosfilt(sos, samples, axis=-1)
-    return np.asarray(averaged_rms(filtered, sampling_frequency, averaging))
+def band_peaks(
+    samples: Float[Array, "... steps"],
+    sampling_frequency: float,
+    mid_band: Float[Array, " bands"],
+) -> tuple[Float[Array, "bands ..."], Float[Array, "bands ..."]]:
+    """Return the largest absolute value of each signal in each band, and when it occurs [s].
+
+    Behind the record the filters ring on as in `band_levels`.
+    """
+
+    def peak(f: float) -> tuple[Array, Array]:
+        padded = _faded_out(samples, sampling_frequency, max(_WINDOW, _PERIODS / f))
+        size = np.abs(_filtered(padded, sampling_frequency, f, zero_phase=False))
+        when = size.argmax(axis=-1) / sampling_frequency - band_delay(f, sampling_frequency)
+        return np.asarray(size.max(axis=-1)), np.asarray(np.maximum(when, 0.0))
+
+    with ThreadPoolExecutor(n_threads()) as pool:
+        found = list(pool.map(peak, mid_band))
+    return np.stack([size for size, _ in found]), np.stack([when for _, when in found])
 
 
-def _faded_out(samples: Array, n_steps: int) -> Array:
-    """Add the mirrored end of the record under half a cosine."""
-    n = min(n_steps, samples.shape[-1] - 1)
-    fade = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, n + 1) / n))
-    tail = samples[..., -2 : -2 - n : -1] * fade
-    rest = np.zeros((*samples.shape[:-1], n_steps - n))
+def level_scatter(
+    mid_band: Float[Array, " bands"], averaging_time: float
+) -> Float[Array, " bands"]:
+    """Return the relative standard error of a band's RMS over a time, for Gaussian noise.
+
+    ``1 / (2 sqrt(B T))``: about 100 % in the 1 Hz band over 1 s, 12 % in that of 80 Hz.
+
+    References
+    ----------
+    J. S. Bendat, A. G. Piersol, Random Data, 4th ed. (2010), section 8.2.2.
+    """
+    edges = band_edges(mid_band)
+    bandwidth = edges[:, 1] - edges[:, 0]
+    return 0.5 / np.sqrt(bandwidth * positive("averaging_time", averaging_time))
+
+
+def _filtered(samples: Array, sampling_frequency: float, f: float, *, zero_phase: bool) -> Array:
+    sos = band_filter(f, sampling_frequency)
+    if zero_phase:
+        return filter_zero_phase(sos, samples, padding=round(_PERIODS / f * sampling_frequency))
+    return np.asarray(signal.sosfilt(sos, samples, axis=-1))
+
+
+def _faded_out(samples: Array, sampling_frequency: float, ringing: float) -> Array:
+    """Let the record go on behind its end, fade out within a second, and rest.
+
+    Its end is turned about the last sample, which keeps value and slope; then it is no click in the
+    bands far above its own motion.
+    """
+    n_fade = min(round(_WINDOW * sampling_frequency), samples.shape[-1] - 1)
+    fade = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, n_fade + 1) / n_fade))
+    tail = (2.0 * samples[..., -1:] - samples[..., -2 : -2 - n_fade : -1]) * fade
+    rest = np.zeros((*samples.shape[:-1], round(ringing * sampling_frequency) - n_fade))
     return np.concatenate([samples, tail, rest], axis=-1)

@@ -151,7 +151,7 @@ def _assessed_step(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterat
         try:
             curve = find_criterion(name)
         except InputError:
-            continue  # reported where the curves are read
+            continue  # reported where the curves are read, or the user's own
         top = max(top, min(float(curve.frequencies[-1]), _TOP))
     dt = methods[criteria.method].interaction.integration.dt
     if top and dt > 1.0 / (2.5 * top) * (1 + 1e-9):

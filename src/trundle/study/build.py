@@ -14,6 +14,7 @@ from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
 from trundle.errors import InputError, Problem, StudyError
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import ConstantSpeed, Hat, Hermite, Route
+from trundle.signals import Isolation, Isolator, TransmissibilityTable
 from trundle.simulate import Coupled, Decoupled
 from trundle.structure import (
     FloorPlan,
@@ -38,6 +39,7 @@ from trundle.study.model import (
     road_label,
 )
 from trundle.study.read import StudyFile, read_study
+from trundle.study.user_criteria import read_criteria
 from trundle.vehicle import VEHICLES, Axle, Body, Hinge, Vehicle, build_vehicle
 
 __all__ = ["load_study"]
@@ -88,6 +90,7 @@ class _Builder:
         methods = self._methods(mesh_size)
         band, follows = self._band()
         assessment = self._assessment()
+        isolations = self._isolations()
         self._unique_names()
         self.problems += relation_problems(
             file, plan, drives, methods, band=band, follows_dt=follows
@@ -116,6 +119,7 @@ class _Builder:
             band=band,
             band_follows_dt=follows,
             points={p.name: p.at for p in file.items("point")},
+            isolations=isolations,
             methods=tuple(methods.values()),
             assessment=assessment,
             printed=tuple(Printed(**dict(p)) for p in file.items("printed")),
@@ -296,10 +300,16 @@ class _Builder:
         section = self.file.tables.get("criteria")
         if section is None:
             return None
+        folder, own = Path(self.file.source).parent, list[Criterion]()
+        for i, name in enumerate(section.files):
+            read = self._try(f"criteria.files[{i + 1}]", lambda n=name: read_criteria(folder / n))
+            own += read or ()
+        if self.problems and len(own) < len(section.files):
+            return None  # a curve of a file that cannot be read is not a second mistake
         curves = [
             self._try(
                 f"criteria.curves[{i + 1}]",
-                lambda n=name: find_criterion(n),
+                lambda n=name: find_criterion(n, own),
                 "see 'trundle criteria'",
             )
             for i, name in enumerate(section.curves)
@@ -310,7 +320,19 @@ class _Builder:
             method=section.method,
             percentile=section.percentile,
             averaging=section.averaging,
+            events=section.events,
         )
+
+    def _isolations(self) -> dict[str, Isolation]:
+        found: dict[str, Isolation] = {}
+        for i, section in self.file.lists.get("point", []):
+            if section.isolator is not None:
+                made = self._try(
+                    f"point[{i + 1}].isolator", lambda s=section.isolator: _isolation(s)
+                )
+                if made is not None:
+                    found[section.name] = made
+        return found
 
     def _unique_names(self) -> None:
         for kind, names in {
@@ -339,6 +361,15 @@ class _Builder:
                 remedy=f"there are: {', '.join(known) or 'none'}",
             )
         )
+
+
+def _isolation(section: schema.IsolatorSection) -> Isolation:
+    if section.table is not None and section.frequency is None and section.damping is None:
+        f, ratios = np.array(section.table).T
+        return TransmissibilityTable(frequencies=f, ratios=ratios)
+    if section.table is None and section.frequency is not None and section.damping is not None:
+        return Isolator(frequency=section.frequency, damping_ratio=section.damping)
+    raise InputError("an isolator is either a frequency and a damping, or a table")
 
 
 def _ratio_with_newmark(place: str) -> Problem:

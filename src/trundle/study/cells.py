@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
-from trundle.response import BandSpectra, ExactStatistics
+from trundle.response import BandSpectra, ExactStatistics, Reduced
 from trundle.simulate import TruncationChange
 
 __all__ = ["EXACT_SHARES", "Cell", "CellKey", "History"]
@@ -55,18 +55,10 @@ class Cell:
     ----------
     key : CellKey
         Which cell.
-    peak_acceleration : ndarray of float, shape (n_runs, n_points)
-        Largest absolute acceleration [m/s2].
-    rms_velocity : ndarray of float, shape (n_runs, n_points)
-        RMS velocity over the record [m/s].
-    spectra : BandSpectra
-        One-third-octave velocity levels [m/s].
-    peak_contact_force : ndarray of float, shape (n_runs, n_contacts)
-        Largest contact force, static load included [N].
+    reduced : Reduced
+        What is kept of every run.
     contact_names : tuple of str
         Names of the contacts.
-    tension_share : ndarray of float, shape (n_contacts,)
-        Share of runs in which a contact would have had to pull.
     exact : ExactStatistics or None
         Exact statistics over all roads of the class; only modes have them.
     exact_peaks : ndarray of float or None, shape (n_shares, n_points)
@@ -82,15 +74,31 @@ class Cell:
     """
 
     key: CellKey
-    peak_acceleration: Float[Array, "runs points"]
-    rms_velocity: Float[Array, "runs points"]
-    spectra: BandSpectra
-    peak_contact_force: Float[Array, "runs contacts"]
+    reduced: Reduced
     contact_names: tuple[str, ...]
-    tension_share: Float[Array, " contacts"]
     exact: ExactStatistics | None
     exact_peaks: Float[Array, "shares points"] | None
     truncation: TruncationChange | None
     history: History
     top: float
     warnings: tuple[FitnessWarning, ...]
+
+    @property
+    def peak_acceleration(self) -> Float[Array, "runs points"]:
+        """Largest absolute acceleration of every run [m/s2]."""
+        return self.reduced.peak_acceleration
+
+    @property
+    def rms_velocity(self) -> Float[Array, "runs points"]:
+        """RMS velocity of every run over its record [m/s]."""
+        return self.reduced.rms_velocity
+
+    @property
+    def spectra(self) -> BandSpectra:
+        """One-third-octave velocity levels of every run [m/s]."""
+        return self.reduced.spectra
+
+    @property
+    def peak_contact_force(self) -> Float[Array, "runs contacts"]:
+        """Largest contact force of every run, static load included [N]."""
+        return self.reduced.peak_contact_force

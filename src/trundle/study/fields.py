@@ -16,6 +16,7 @@ __all__ = [
     "AreaDensity",
     "DampingCoefficient",
     "Density",
+    "Factor",
     "Flag",
     "Frequency",
     "Length",
@@ -143,4 +144,5 @@ Ratio: TypeAlias = Annotated[
     _quantity("ratio"),
     _rule(lambda value: 0.0 <= value < 1.0, "must be at least 0 and below 1 (write 3 % or 0.03)"),
 ]
+Factor: TypeAlias = Annotated[float, _quantity("ratio"), _POSITIVE]
 Place: TypeAlias = tuple[Length, Length]

@@ -8,9 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trundle.criteria import spectra_asked_for
 from trundle.dynamics import Modal
-from trundle.response import exact_statistics, reduce_rougher
-from trundle.signals import Averaging
+from trundle.response import (
+    SpectrumQuantity,
+    behind_isolators,
+    exact_statistics,
+    reduce_rougher,
+)
+from trundle.signals import Averaging, Isolation
 from trundle.simulate import (
     Crossing,
     Layout,
@@ -62,6 +68,10 @@ class Job:
         Seed of all roads.
     averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of band levels.
+    quantities : tuple of SpectrumQuantity
+        Spectra that the criteria ask for.
+    isolations : mapping of str to Isolation
+        What stands between floor and tool at some of the points.
     """
 
     name: str
@@ -75,6 +85,8 @@ class Job:
     duration: float
     seed: int
     averaging: Averaging
+    quantities: tuple[SpectrumQuantity, ...]
+    isolations: Mapping[str, Isolation]
 
     @property
     def pieces(self) -> tuple[str, ...]:
@@ -140,6 +152,8 @@ def _job(
         duration=study.duration,
         seed=study.seed,
         averaging=study.assessment.averaging if study.assessment else "max_1s",
+        quantities=spectra_asked_for(study.assessment.criteria) if study.assessment else (),
+        isolations=study.isolations,
     )
 
 
@@ -173,13 +187,17 @@ def compute(job: Job, layout: Layout, part: int, progress: Progress | None = Non
         runs, mean = runs_with_mean(
             layout, runs=job.parts[part], seed=job.seed, progress=_part(progress, 0.8)
         )
-        reduced = reduce_rougher(runs, mean, factors, averaging=job.averaging)
-        history = runs.part(slice(0, 1)) if part == 0 else None
-        histories = [] if history is None else [history.rougher(mean, f) for f in factors]
         first = part == 0 and job.modal
         change = truncation_change(layout, runs, job.parts[0]) if first else None
+        runs, mean = (behind_isolators(response, job.isolations) for response in (runs, mean))
+        reduced = reduce_rougher(
+            runs, mean, factors, averaging=job.averaging, quantities=job.quantities
+        )
+        history = runs.part(slice(0, 1)) if part == 0 else None
+        histories = [] if history is None else [history.rougher(mean, f) for f in factors]
         return runs_piece(runs, reduced, histories, truncation=change)
     answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
+    answers = (behind_isolators(answer, job.isolations) for answer in answers)
     exact = exact_statistics(answers, f_max=layout.f_max)
     return exact_piece(exact, factors)
 

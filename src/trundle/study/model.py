@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from trundle.criteria import Criterion
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import DriveIn, Entry, Ramp, Route, StaticStart
-from trundle.signals import Averaging
+from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.structure import Floor, FloorPlan
 from trundle.study import schema
@@ -94,12 +94,15 @@ class Assessment:
         Share of runs that a level must cover, 0 to 100.
     averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of band levels.
+    events : float
+        How many passages a vibration dose is for.
     """
 
     criteria: tuple[Criterion, ...]
     method: str
     percentile: float
     averaging: Averaging
+    events: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,6 +163,8 @@ class Study:
         Whether the band ends where a method's time step can no longer follow.
     points : mapping of str to (x, y)
         Where the response is read [m].
+    isolations : mapping of str to Isolator or TransmissibilityTable
+        What stands between floor and tool at some of the points.
     methods : tuple of MethodPlan
         The methods, in the order of the file.
     assessment : Assessment or None
@@ -183,6 +188,7 @@ class Study:
     band: RoughnessBand
     band_follows_dt: bool
     points: Mapping[str, tuple[float, float]]
+    isolations: Mapping[str, Isolation]
     methods: tuple[MethodPlan, ...]
     assessment: Assessment | None
     printed: tuple[Printed, ...]

@@ -8,14 +8,31 @@ from typing import Any
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
-from trundle.response import BandSpectra, ExactStatistics, Process, Reduced, join
+from trundle.response import (
+    BandSpectra,
+    ExactStatistics,
+    Process,
+    Reduced,
+    SpectrumQuantity,
+    join,
+)
 from trundle.simulate import Runs, TruncationChange
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
 from trundle.study.cells import EXACT_SHARES, Cell, CellKey, History
 
 __all__ = ["Piece", "cell_of", "exact_piece", "runs_piece"]
 
-_RUNS = ("peak_acceleration", "peak_time", "rms_velocity", "peak_contact_force", "tension")
+_RUNS = (
+    "peak_acceleration",
+    "peak_time",
+    "rms_velocity",
+    "response_factor",
+    "vdv",
+    "peak_contact_force",
+    "tension",
+)
+_LINES = ("mid_band", "resolved")
+_LEVELS = ("values", "times")
 _COARSE = 0.05  # change of an RMS by half the waves above which exact statistics are doubted
 _HISTORY = ("displacement", "velocity", "acceleration", "contact_forces")
 _TRUNCATION = ("velocity", "acceleration")
@@ -46,15 +63,18 @@ def runs_piece(
     truncation: TruncationChange | None,
 ) -> Piece:
     """Return what some runs leave on every road; `histories` hold the first run, or nothing."""
-    arrays: dict[str, Array] = {"time": runs.time, "mid_band": reduced[0].spectra.mid_band}
-    arrays["resolved"] = reduced[0].spectra.resolved
+    arrays: dict[str, Array] = {"time": runs.time}
+    for spectra in _spectra(reduced[0]):
+        arrays |= {f"{spectra.quantity}.{name}": getattr(spectra, name) for name in _LINES}
     for i, kept in enumerate(reduced):
         arrays |= {f"{i}.{name}": getattr(kept, name) for name in _RUNS}
-        arrays[f"{i}.band_levels"] = kept.spectra.values
+        for spectra in _spectra(kept):
+            arrays |= {f"{i}.{spectra.quantity}.{n}": getattr(spectra, n) for n in _LEVELS}
     for i, history in enumerate(histories):
         arrays |= {f"{i}.history.{name}": getattr(history, name)[0] for name in _HISTORY}
     notes: dict[str, Any] = {
         "averaging": reduced[0].spectra.averaging,
+        "quantities": [spectra.quantity for spectra in _spectra(reduced[0])],
         "point_names": list(runs.point_names),
         "contact_names": list(runs.contact_names),
         "top": min(runs.f_max, runs.sampling_frequency / 2.5),
@@ -106,12 +126,8 @@ def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> 
     pulling = contact_warnings(float(runs.tension.any(axis=1).mean()))
     return Cell(
         key=key,
-        peak_acceleration=runs.peak_acceleration,
-        rms_velocity=runs.rms_velocity,
-        spectra=runs.spectra,
-        peak_contact_force=runs.peak_contact_force,
+        reduced=runs,
         contact_names=tuple(notes["contact_names"]),
-        tension_share=runs.tension.mean(axis=0),
         exact=_exact(exact[0]).rougher(factor) if exact else None,
         exact_peaks=exact[0].arrays[f"{road}.peaks"] if exact else None,
         truncation=_truncation(sampled[0]),
@@ -149,17 +165,28 @@ def _truncation(piece: Piece) -> TruncationChange | None:
     )
 
 
+def _spectra(reduced: Reduced) -> tuple[BandSpectra, ...]:
+    return (reduced.spectra, *reduced.more.values())
+
+
 def _reduced(piece: Piece, road: int) -> Reduced:
     arrays = piece.arrays
+    first, *more = (_spectrum(piece, road, name) for name in piece.notes["quantities"])
     return Reduced(
-        spectra=BandSpectra(
-            mid_band=arrays["mid_band"],
-            values=arrays[f"{road}.band_levels"],
-            resolved=arrays["resolved"],
-            averaging=piece.notes["averaging"],
-            point_names=tuple(piece.notes["point_names"]),
-        ),
+        spectra=first,
+        more={spectra.quantity: spectra for spectra in more},
         **{name: arrays[f"{road}.{name}"] for name in _RUNS},
+    )
+
+
+def _spectrum(piece: Piece, road: int, quantity: SpectrumQuantity) -> BandSpectra:
+    arrays = piece.arrays
+    return BandSpectra(
+        quantity=quantity,
+        averaging=piece.notes["averaging"],
+        point_names=tuple(piece.notes["point_names"]),
+        **{name: arrays[f"{quantity}.{name}"] for name in _LINES},
+        **{name: arrays[f"{road}.{quantity}.{name}"] for name in _LEVELS},
     )
 
 

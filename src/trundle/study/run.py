@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from trundle.criteria import Verdict, assess_spectra
+from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes
 from trundle.errors import FitnessWarning
 from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
@@ -192,10 +192,10 @@ def _all_modes(study: Study, tell: Report) -> Modes | None:
 
 def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:
     assert study.assessment is not None  # the caller has looked
-    return assess_spectra(
-        cell.spectra,
-        cell.peak_acceleration,
+    return assess_reduced(
+        cell.reduced,
         study.assessment.criteria,
         percentile=study.assessment.percentile,
         top=cell.top,
+        events=study.assessment.events,
     )

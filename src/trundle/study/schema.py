@@ -14,6 +14,7 @@ from trundle.study.fields import (
     AreaDensity,
     DampingCoefficient,
     Density,
+    Factor,
     Flag,
     Frequency,
     Length,
@@ -41,6 +42,7 @@ __all__ = [
     "DampingSection",
     "FloorSection",
     "GeneralSection",
+    "IsolatorSection",
     "MethodSection",
     "NoteSection",
     "PlanFloorSection",
@@ -209,11 +211,20 @@ class TrafficSection(Section):
     routes: Annotated[tuple[Name, ...], Field(min_length=2)]
 
 
+class IsolatorSection(Section):
+    """What stands between floor and tool: a mass on a spring and a damper, or a table."""
+
+    frequency: Frequency | None = None
+    damping: Ratio | None = None
+    table: Annotated[tuple[tuple[Frequency, Factor], ...], Field(min_length=2)] | None = None
+
+
 class PointSection(Section):
-    """A place where the response is read."""
+    """A place where the response is read, on the floor or behind an isolator there."""
 
     name: Name
     at: Place
+    isolator: IsolatorSection | None = None
 
 
 class DampingSection(Section):
@@ -246,6 +257,8 @@ class CriteriaSection(Section):
     method: Name
     percentile: Annotated[Number, Field(gt=0.0, le=100.0)] = 95.0
     averaging: Literal["max_1s", "slow", "fast", "event"] = "max_1s"
+    events: Annotated[Number, Field(ge=1.0, le=1e6)] = 1.0
+    files: tuple[Line, ...] = ()
 
 
 class PrintedSection(Section):

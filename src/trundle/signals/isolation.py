@@ -1,0 +1,128 @@
+"""Pass a floor's motion on to what stands on an isolator."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from jaxtyping import Complex, Float, Inexact
+from scipy import fft, signal
+
+from trundle._checks import frozen_array, positive, set_frozen, within
+from trundle._typing import Array
+from trundle.errors import InputError
+
+__all__ = ["Isolation", "Isolator", "TransmissibilityTable", "behind"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Isolator:
+    """Hold a mass on a spring and a damper, moved by the floor.
+
+    The mass is taken as light beside the floor: the floor's motion stays as it is.
+
+    Attributes
+    ----------
+    frequency : float
+        Natural frequency of mass on spring [Hz].
+    damping_ratio : float
+        Ratio of critical damping, 0 to 2.
+    """
+
+    frequency: float
+    damping_ratio: float
+
+    def __post_init__(self) -> None:
+        """Check both numbers."""
+        set_frozen(
+            self,
+            frequency=positive("isolator frequency", self.frequency),
+            damping_ratio=within("isolator damping_ratio", self.damping_ratio, 0.0, 2.0),
+        )
+
+    def response(self, f: Float[Array, " lines"]) -> Complex[Array, " lines"]:
+        """Return motion of the mass over motion of the floor.
+
+        ``(1 + 2i zeta r) / (1 - r^2 + 2i zeta r)``, ``r = f / f0``.
+        """
+        r = np.asarray(f, float) / self.frequency
+        passed = 1.0 + 2j * self.damping_ratio * r
+        return passed / (passed - r**2)
+
+    def __str__(self) -> str:
+        """Describe the isolator for a report."""
+        return f"isolator of {self.frequency:g} Hz, {100 * self.damping_ratio:g} % damping"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TransmissibilityTable:
+    """Hold a measured transmissibility: its size alone, its phase taken as zero.
+
+    Attributes
+    ----------
+    frequencies : ndarray of float, shape (n_points,)
+        Frequencies, rising [Hz].
+    ratios : ndarray of float, shape (n_points,)
+        Motion behind over motion before; straight in between on log-log axes, and held beyond
+        both ends.
+    """
+
+    frequencies: Float[Array, " points"]
+    ratios: Float[Array, " points"]
+
+    def __post_init__(self) -> None:
+        """Check and freeze both columns."""
+        f = frozen_array("transmissibility frequencies", self.frequencies, shape=(None,))
+        ratios = frozen_array("transmissibility ratios", self.ratios, shape=f.shape)
+        if len(f) < 2 or f[0] <= 0.0 or np.any(np.diff(f) <= 0.0):
+            raise InputError("transmissibility frequencies must be above 0 and rise; give two")
+        if np.any(ratios <= 0.0):
+            raise InputError("transmissibility ratios must be greater than 0")
+        set_frozen(self, frequencies=f, ratios=ratios)
+
+    def response(self, f: Float[Array, " lines"]) -> Complex[Array, " lines"]:
+        """Return the ratio at frequencies [Hz]."""
+        at = np.log(np.maximum(np.asarray(f, float), self.frequencies[0]))
+        value = np.exp(np.interp(at, np.log(self.frequencies), np.log(self.ratios)))
+        return value + 0j
+
+    def __str__(self) -> str:
+        """Describe the table for a report."""
+        return f"transmissibility given from {self.frequencies[0]:g} to {self.frequencies[-1]:g} Hz"
+
+
+Isolation: TypeAlias = Isolator | TransmissibilityTable
+"""What stands between floor and tool."""
+
+
+def behind(
+    isolation: Isolation, samples: Inexact[Array, "... steps"], sampling_frequency: float
+) -> Inexact[Array, "... steps"]:
+    """Return the motion behind an isolator from that of the floor.
+
+    Parameters
+    ----------
+    isolation : Isolator or TransmissibilityTable
+        What stands between.
+    samples : ndarray, shape (..., n_steps)
+        Motion of the floor, at rest before the record; real, or complex answers to waves.
+    sampling_frequency : float
+        Samples per second [Hz].
+    """
+    if isinstance(isolation, Isolator):
+        return _moved(isolation, samples, sampling_frequency)
+    n = samples.shape[-1]
+    size = fft.next_fast_len(2 * n)
+    f = np.abs(fft.fftfreq(size, 1.0 / sampling_frequency))
+    spectrum = fft.fft(samples, size, axis=-1) * isolation.response(f)
+    moved = np.asarray(fft.ifft(spectrum, axis=-1)[..., :n])
+    return moved if np.iscomplexobj(samples) else moved.real.copy()
+
+
+def _moved(isolator: Isolator, samples: Array, sampling_frequency: float) -> Array:
+    """Step mass, spring and damper exactly for motion that is linear between samples."""
+    omega, zeta = 2.0 * np.pi * isolator.frequency, isolator.damping_ratio
+    system = ([2.0 * zeta * omega, omega**2], [1.0, 2.0 * zeta * omega, omega**2])
+    b, a, _ = signal.cont2discrete(system, 1.0 / sampling_frequency, method="foh")
+    return np.asarray(signal.lfilter(np.ravel(b), a, samples, axis=-1))

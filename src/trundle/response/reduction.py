@@ -77,7 +77,8 @@ def reduce_runs(
     size = np.abs(runs.acceleration)
     fs = runs.sampling_frequency
     felt = weight(np.moveaxis(runs.acceleration, 1, -1), fs, "Wb")
-    wanted = [name for name in dict.fromkeys(quantities) if name != "band_rms_velocity"]
+    wanted: dict[SpectrumQuantity, None] = dict.fromkeys(quantities)
+    wanted.pop("band_rms_velocity", None)
     return Reduced(
         peak_acceleration=size.max(axis=1),
         peak_time=runs.time[size.argmax(axis=1)],

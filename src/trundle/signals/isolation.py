@@ -124,5 +124,6 @@ def _moved(isolator: Isolator, samples: Array, sampling_frequency: float) -> Arr
     """Step mass, spring and damper exactly for motion that is linear between samples."""
     omega, zeta = 2.0 * np.pi * isolator.frequency, isolator.damping_ratio
     system = ([2.0 * zeta * omega, omega**2], [1.0, 2.0 * zeta * omega, omega**2])
-    b, a, _ = signal.cont2discrete(system, 1.0 / sampling_frequency, method="foh")
+    # scipy's annotations know the state-space form alone
+    b, a, _ = signal.cont2discrete(system, 1.0 / sampling_frequency, method="foh")  # pyright: ignore
     return np.asarray(signal.lfilter(np.ravel(b), a, samples, axis=-1))

@@ -189,7 +189,8 @@ def compute(job: Job, layout: Layout, part: int, progress: Progress | None = Non
         )
         first = part == 0 and job.modal
         change = truncation_change(layout, runs, job.parts[0]) if first else None
-        runs, mean = (behind_isolators(response, job.isolations) for response in (runs, mean))
+        runs = behind_isolators(runs, job.isolations)
+        mean = behind_isolators(mean, job.isolations)
         reduced = reduce_rougher(
             runs, mean, factors, averaging=job.averaging, quantities=job.quantities
         )

@@ -42,6 +42,7 @@ def behind_isolators(response: Response, isolations: Mapping[str, Isolation]) ->
     fs = 1.0 / float(response.time[1] - response.time[0])
 
     def moved(values: Array) -> Array:
+        """Return values with the isolated points in place of the floor's."""
         out = values.copy()
         for name, isolation in isolations.items():
             at = names.index(name)

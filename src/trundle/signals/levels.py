@@ -143,6 +143,7 @@ def band_maxima(
     """
 
     def level(f: float) -> tuple[Array, Array]:
+        """Return the level in one band, and its time."""
         signal_and_tail = samples
         if averaging != "event":
             ringing = max(_WINDOW, _PERIODS / f)
@@ -168,6 +169,7 @@ def band_peaks(
     """
 
     def peak(f: float) -> tuple[Array, Array]:
+        """Return the largest value in one band, and its time."""
         padded = _faded_out(samples, sampling_frequency, max(_WINDOW, _PERIODS / f))
         size = np.abs(_filtered(padded, sampling_frequency, f, zero_phase=False))
         when = size.argmax(axis=-1) / sampling_frequency - band_delay(f, sampling_frequency)

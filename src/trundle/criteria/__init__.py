@@ -1,6 +1,7 @@
 """Hold vibration criteria as data and responses against them."""
 
 from trundle.criteria.assess import assess, assess_reduced, best_class, spectra_asked_for
+from trundle.criteria.class_map import ClassMap, class_map, envelope_of
 from trundle.criteria.curve import (
     BY_FREQUENCY,
     VC,
@@ -15,6 +16,7 @@ __all__ = [
     "BY_FREQUENCY",
     "VC",
     "BandOutcomes",
+    "ClassMap",
     "Criterion",
     "Quantity",
     "Status",
@@ -23,6 +25,8 @@ __all__ = [
     "assess",
     "assess_reduced",
     "best_class",
+    "class_map",
+    "envelope_of",
     "find_criterion",
     "spectra_asked_for",
 ]

@@ -1,6 +1,7 @@
 """Reduce histories to spectra, percentiles, bounds and exact statistics."""
 
 from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
+from trundle.response.floor_map import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
 from trundle.response.peaks import Process, peak_levels
 from trundle.response.reduction import (
@@ -21,12 +22,14 @@ from trundle.response.statistics import ExactStatistics, exact_statistics
 __all__ = [
     "BandSpectra",
     "ExactStatistics",
+    "FloorMap",
     "Process",
     "Reduced",
     "SpectrumQuantity",
     "UpperBounds",
     "behind_isolators",
     "exact_statistics",
+    "floor_map",
     "join",
     "peak_levels",
     "percentile_interval",

@@ -12,6 +12,7 @@ from trundle.simulate.harmonics import (
     place_waves,
 )
 from trundle.simulate.layout import Layout, lay_out
+from trundle.simulate.places import PlaceResponses, lay_out_places
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import MeanResponse, Runs
 from trundle.simulate.truncation import TruncationChange, truncation_change
@@ -28,6 +29,7 @@ __all__ = [
     "Modal",
     "ModalRatio",
     "Newmark",
+    "PlaceResponses",
     "PreparedFloor",
     "Rayleigh",
     "Runs",
@@ -39,6 +41,7 @@ __all__ = [
     "ensemble",
     "harmonics",
     "lay_out",
+    "lay_out_places",
     "mean_response",
     "place_waves",
     "prepare",

@@ -43,7 +43,7 @@ class ModalFloor:
         self.speed = speed
         self.points = np.ascontiguousarray(points @ modes.shapes)
         self.n_contacts = self._n = speed.shape[1]
-        self._square, self._rows = modes.omega**2, rows
+        self._square, self.rows = modes.omega**2, rows
         # Only the route's dofs are read; together they stay in cache.
         used = rows.used_dofs()
         self._route_shapes = np.ascontiguousarray(modes.shapes[used])
@@ -129,7 +129,7 @@ class ModalFloor:
 
     def _chunk(self, start: int) -> tuple[Array, Array]:
         part = slice(start * self._n, (start + _CHUNK) * self._n)
-        weights = np.concatenate([self._rows.value[part], self._rows.slope[part]])
+        weights = np.concatenate([self.rows.value[part], self.rows.slope[part]])
         at = np.concatenate([self._at[part]] * 2)
         starts = np.arange(0, at.size + 1, at.shape[1])
         shape = (len(at), len(self._route_shapes))

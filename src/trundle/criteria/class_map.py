@@ -1,0 +1,166 @@
+"""Hold a map of a floor against criteria: class, margin and exceedance at every place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from trundle._checks import within
+from trundle._typing import Array
+from trundle.criteria.curve import Criterion
+from trundle.errors import InputError
+from trundle.response import FloorMap
+
+__all__ = ["ClassMap", "class_map", "envelope_of"]
+
+_MAPPED = ("band_rms_velocity", "peak_acceleration")
+_TOP = 80.0  # Hz: how far peaks are asked to reach
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ClassMap:
+    """Hold criteria over a floor.
+
+    Attributes
+    ----------
+    places : ndarray of float, shape (n_places, 2)
+        Where [m].
+    criteria : tuple of Criterion
+        Those that a map can be held against: velocity in bands, peak acceleration.
+    margin : ndarray of float, shape (n_criteria, n_places)
+        Smallest limit over level in the bands computed; below 1 fails; NaN where none was.
+    governing_band : ndarray of float, shape (n_criteria, n_places)
+        Mid-band frequency where it is smallest [Hz]; NaN for peaks.
+    share_exceeding : ndarray of float, shape (n_criteria, n_places)
+        Share of runs above the limit in any band, 0 to 1.
+    complete : tuple of bool
+        Whether everything that each criterion asks for was computed; else it cannot be passed.
+    percentile : float
+        Share of runs that levels cover, 0 to 100.
+    """
+
+    places: Float[Array, "places 2"]
+    criteria: tuple[Criterion, ...]
+    margin: Float[Array, "criteria places"]
+    governing_band: Float[Array, "criteria places"]
+    share_exceeding: Float[Array, "criteria places"]
+    complete: tuple[bool, ...]
+    percentile: float
+
+    def classes(self) -> Int[Array, " places"]:
+        """Return which velocity criterion is the strictest that is passed; -1 for none.
+
+        One criterion is stricter than another whose smallest limit is larger.
+        """
+        order = sorted(
+            (i for i, c in enumerate(self.criteria) if c.quantity == "band_rms_velocity"),
+            key=lambda i: -float(self.criteria[i].limits.min()),
+        )
+        found = np.full(self.margin.shape[1], -1)
+        for i in order:
+            if self.complete[i]:
+                found[self.margin[i] >= 1.0] = i
+        return found
+
+    def index(self, name: str) -> int:
+        """Return the place of a criterion by its name."""
+        names = [criterion.name for criterion in self.criteria]
+        if name not in names:
+            raise InputError(f"no criterion {name!r} on the map; there are {', '.join(names)}")
+        return names.index(name)
+
+
+def class_map(
+    floor: FloorMap, criteria: Sequence[Criterion], *, percentile: float = 95.0, f_max: float
+) -> ClassMap:
+    """Hold a map against criteria.
+
+    Parameters
+    ----------
+    floor : FloorMap
+        Levels of every run at every place.
+    criteria : sequence of Criterion
+        Curves; those that a map has no quantity for are left out.
+    percentile : float
+        Share of runs that the compared level must cover, 0 to 100.
+    f_max : float
+        Highest frequency that the computation contains [Hz].
+    """
+    within("percentile", percentile, 0.0, 100.0)
+    some = tuple(c for c in criteria if c.quantity in _MAPPED and c.axis != "horizontal")
+    level = np.percentile(floor.band_levels, percentile, axis=0)
+    found = [
+        _by_band(floor, level, c)
+        if c.quantity == "band_rms_velocity"
+        else _by_peak(floor, c, percentile, f_max)
+        for c in some
+    ]
+    shape = (len(some), len(floor.places))
+    return ClassMap(
+        places=floor.places,
+        criteria=some,
+        margin=np.reshape([one[0] for one in found], shape),
+        governing_band=np.reshape([one[1] for one in found], shape),
+        share_exceeding=np.reshape([one[2] for one in found], shape),
+        complete=tuple(one[3] for one in found),
+        percentile=percentile,
+    )
+
+
+def envelope_of(maps: Sequence[ClassMap]) -> ClassMap:
+    """Return the worst of several maps at every place: of roads, vehicles, speeds.
+
+    The share of runs is that of the worst single map.
+    """
+    first = maps[0]
+    margins = np.stack([one.margin for one in maps])
+    worst = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=0)[None]
+    bands = np.stack([one.governing_band for one in maps])
+    return ClassMap(
+        places=first.places,
+        criteria=first.criteria,
+        margin=np.take_along_axis(margins, worst, axis=0)[0],
+        governing_band=np.take_along_axis(bands, worst, axis=0)[0],
+        share_exceeding=np.max([one.share_exceeding for one in maps], axis=0),
+        complete=tuple(all(flags) for flags in zip(*(one.complete for one in maps), strict=True)),
+        percentile=first.percentile,
+    )
+
+
+def _by_band(
+    floor: FloorMap, level: Array, criterion: Criterion
+) -> tuple[Array, Array, Array, bool]:
+    limits = criterion.limit(floor.mid_band)
+    asked = np.isfinite(limits)
+    usable = asked & floor.resolved
+    n_places = len(floor.places)
+    beyond = criterion.frequencies[-1] > floor.mid_band[-1] * 1.02
+    complete = bool(usable.any() and not (asked & ~floor.resolved).any() and not beyond)
+    if not usable.any():
+        nothing = np.full(n_places, np.nan)
+        return nothing, nothing, nothing, False
+    margins = limits[usable] / np.maximum(level[:, usable], np.finfo(float).tiny)
+    above = (floor.band_levels[:, :, usable] > limits[usable]).any(axis=2).mean(axis=0)
+    return (
+        margins.min(axis=1),
+        floor.mid_band[usable][margins.argmin(axis=1)],
+        above,
+        complete,
+    )
+
+
+def _by_peak(
+    floor: FloorMap, criterion: Criterion, percentile: float, f_max: float
+) -> tuple[Array, Array, Array, bool]:
+    limit = float(criterion.limits[0])
+    if np.isnan(floor.peak_acceleration).any():
+        nothing = np.full(len(floor.places), np.nan)
+        return nothing, nothing, nothing, False
+    value = np.percentile(floor.peak_acceleration, percentile, axis=0)
+    margin = limit / np.maximum(value, np.finfo(float).tiny)
+    above = (floor.peak_acceleration > limit).mean(axis=0)
+    reach = min(float(criterion.frequencies[-1]), _TOP)
+    return margin, np.full(len(value), np.nan), above, f_max >= reach * (1 - 1e-6)

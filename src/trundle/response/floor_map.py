@@ -1,0 +1,225 @@
+"""Reduce the response of a whole floor, run by run, without storing a history."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Complex, Float
+from scipy import fft, ndimage, signal
+
+from trundle._checks import one_of
+from trundle._threads import n_threads
+from trundle._typing import Array
+from trundle.signals import (
+    Averaging,
+    band_edges,
+    band_filter,
+    mid_band_frequencies,
+    usable_bands,
+)
+from trundle.simulate import PlaceResponses
+
+__all__ = ["FloorMap", "floor_map"]
+
+_WINDOW = 1.0  # s
+_BELOW, _ABOVE = 2.2, 1.8  # times a band's mid-frequency, beyond which its filter passes nothing
+_EDGE = 1.3  # times its mid-frequency: where what a filter passes of its own band ends
+_WIDTH = 0.65  # times its mid-frequency: samples a second of an envelope
+_SLOW = 7.0  # Hz: below, 1 s holds so few periods that an envelope will not do
+_LEAST_RATE = 20.0  # samples a second: a window of 1 s is moved in steps of 1/20 s
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FloorMap:
+    """Hold levels of every run at every place.
+
+    Attributes
+    ----------
+    places : ndarray of float, shape (n_places, 2)
+        Where [m].
+    mid_band : ndarray of float, shape (n_bands,)
+        Exact mid-band frequencies [Hz].
+    resolved : ndarray of bool, shape (n_bands,)
+        True where time step and modes reach over the whole band.
+    averaging : {"max_1s", "event"}
+        Averaging rule of the band levels.
+    band_levels : ndarray of float, shape (n_runs, n_places, n_bands)
+        RMS velocity in one-third octaves [m/s]; NaN in bands that are not resolved.
+    rms_velocity : ndarray of float, shape (n_runs, n_places)
+        RMS velocity over the record [m/s].
+    peak_acceleration : ndarray of float, shape (n_runs, n_places)
+        Largest absolute acceleration [m/s2]; NaN where it was not asked for.
+    """
+
+    places: Float[Array, "places 2"]
+    mid_band: Float[Array, " bands"]
+    resolved: Bool[Array, " bands"]
+    averaging: Averaging
+    band_levels: Float[Array, "runs places bands"]
+    rms_velocity: Float[Array, "runs places"]
+    peak_acceleration: Float[Array, "runs places"]
+
+    @property
+    def n_runs(self) -> int:
+        """Number of runs."""
+        return len(self.rms_velocity)
+
+
+def floor_map(
+    responses: PlaceResponses,
+    forces: Float[Array, "steps contacts runs"],
+    *,
+    f_max: float,
+    averaging: Averaging = "max_1s",
+    peaks: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> FloorMap:
+    """Map the response to contact forces over a floor.
+
+    Parameters
+    ----------
+    responses : PlaceResponses
+        What leads from the forces to the places.
+    forces : ndarray of float, shape (n_steps, n_contacts, n_runs)
+        Contact forces [N].
+    f_max : float
+        Highest frequency that the computation contains [Hz].
+    averaging : {"max_1s", "event"}
+        Averaging rule of the band levels. Either lets the filters ring out behind the record;
+        ``event`` divides their energy by its length.
+    peaks : bool
+        Whether peak accelerations are wanted; they take as long again.
+    progress : callable, optional
+        Told the share done.
+
+    Notes
+    -----
+    Energies over the event are sums over spectral lines (Parseval); they and the peaks equal those
+    of histories. The largest 1 s average is taken of each band's signal at a lower rate, above 7 Hz
+    of its envelope, in steps of 1/20 s: within 1 % of that of histories in bands that matter, and
+    within 4 % where next to nothing but the skirts of louder bands is left.
+    """
+    fs, n_runs, n_places = 1.0 / responses.dt, forces.shape[2], len(responses.places)
+    mid_band = mid_band_frequencies()
+    resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= f_max)
+    kind = np.float32 if responses.single else np.float64
+    levels = np.full((n_runs, n_places, len(mid_band)), np.nan, dtype=kind)
+    rms, peak = np.empty((n_runs, n_places)), np.empty((n_runs, n_places))
+    lines = _Lines(responses, mid_band[resolved], averaging)
+    with ThreadPoolExecutor(n_threads()) as pool:
+        spectra = responses.spectra(forces, acceleration=peaks, progress=progress)
+        for places, runs, velocity, acceleration in spectra:
+
+            def reduce(
+                run: int, velocity: Array = velocity, acceleration: Array | None = acceleration
+            ) -> tuple[Array, Array, Array]:
+                """Reduce one run; its lines, put together, stay in cache."""
+                more = None if acceleration is None else acceleration[:, :, run].T
+                return lines.reduced(np.ascontiguousarray(velocity[:, :, run].T), more)
+
+            found = list(pool.map(reduce, range(velocity.shape[2])))
+            rms[runs, places] = [one[0] for one in found]
+            peak[runs, places] = [one[1] for one in found]
+            levels[runs, places, resolved] = [one[2] for one in found]
+    return FloorMap(
+        places=responses.places,
+        mid_band=mid_band,
+        resolved=resolved,
+        averaging=averaging,
+        band_levels=levels,
+        rms_velocity=rms,
+        peak_acceleration=peak,
+    )
+
+
+class _Lines:
+    """What is made of the spectral lines of one run at some places."""
+
+    def __init__(self, responses: PlaceResponses, mid_band: Array, averaging: Averaging) -> None:
+        self._n, self._n_steps = responses.n_padded, responses.n_steps
+        self._averaging = one_of("averaging", averaging, ("event", "max_1s"))
+        kind = np.complex64 if responses.single else np.complex128
+        lines, fs = responses.frequencies, 1.0 / responses.dt
+        # of a real record: every line but the first and the last stands for two
+        twice = np.full(len(lines), 2.0)
+        twice[0] = 1.0
+        if self._n % 2 == 0:
+            twice[-1] = 1.0
+        filters = [signal.freqz_sos(band_filter(f, fs), worN=lines, fs=fs)[1] for f in mid_band]
+        weights = [twice, *(twice * np.abs(h) ** 2 for h in filters)]
+        self._weights = np.stack(weights, axis=1) / (self._n * self._n_steps)
+        if averaging == "max_1s":
+            self._weights = self._weights[:, :1]
+        self._weights = self._weights.astype(kind(0).real.dtype)
+        period = self._n / fs
+        self._bands = [
+            _band(f, response, period, kind) for f, response in zip(mid_band, filters, strict=True)
+        ]
+
+    def reduced(
+        self, rows: Complex[Array, "places lines"], acceleration: Array | None
+    ) -> tuple[Array, Array, Array]:
+        """Return RMS velocity, peak acceleration and band levels of one run."""
+        energy = (rows.real**2 + rows.imag**2) @ self._weights
+        peak = np.full(len(rows), np.nan)
+        if acceleration is not None:
+            record = fft.irfft(acceleration, self._n, axis=-1)[:, : self._n_steps]
+            peak = np.maximum(record.max(axis=-1), -record.min(axis=-1))
+        if self._averaging == "event":
+            bands = np.sqrt(energy[:, 1:])
+        else:
+            bands = np.stack([band.largest(rows) for band in self._bands], axis=-1)
+        return np.sqrt(energy[:, 0]), peak, bands
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Band:
+    """A band's signal at a rate that its width needs: itself if it is slow, else its envelope."""
+
+    lines: slice
+    response: Array  # (lines,), scaled so that the square's mean is that of the signal
+    size: int  # samples over the whole period
+    width: int  # samples in a second
+    real: bool
+
+    def largest(self, rows: Array) -> Array:
+        """Return the largest 1 s average, (places,)."""
+        part = rows[:, self.lines] * self.response
+        if self.real:
+            whole = np.zeros((len(part), self.size // 2 + 1), dtype=part.dtype)
+            whole[:, self.lines] = part
+            square = fft.irfft(whole, self.size, axis=-1, norm="forward") ** 2
+        else:
+            envelope = fft.ifft(_folded(part, self.size), axis=-1, norm="forward")
+            square = envelope.real**2 + envelope.imag**2
+        averages = ndimage.uniform_filter1d(square, self.width, axis=-1, mode="wrap")
+        return np.sqrt(averages.max(axis=-1))
+
+
+def _folded(part: Array, size: int) -> Array:
+    """Return lines for an envelope of so many samples.
+
+    What a filter passes far from its band is weak; folded onto the band it keeps its energy.
+    """
+    whole = -(-part.shape[-1] // size) * size
+    padded = np.zeros((len(part), whole), dtype=part.dtype)
+    padded[:, : part.shape[-1]] = part
+    return padded.reshape(len(part), -1, size).sum(axis=1)
+
+
+def _band(f: float, response: Array, period: float, kind: type[np.complexfloating]) -> _Band:
+    n_lines = len(response)
+    lines = slice(max(1, round(f / _BELOW * period)), min(round(f * _ABOVE * period), n_lines - 1))
+    real = bool(f < _SLOW)
+    # a square has twice the frequencies of the signal
+    least = (4.0 * _EDGE if real else _WIDTH) * f
+    width = fft.next_fast_len(int(np.ceil(max(_LEAST_RATE, least))))
+    size = 2 * round(0.5 * width * period)
+    scale = (1.0 if real else np.sqrt(2.0)) / (2.0 * (n_lines - 1))
+    if real:
+        lines = slice(lines.start, min(lines.stop, size // 2))
+    scaled = (scale * response[lines]).astype(kind)
+    return _Band(lines=lines, response=scaled, size=size, width=width, real=real)

@@ -163,7 +163,7 @@ class _Lines:
         self, rows: Complex[Array, "places lines"], acceleration: Array | None
     ) -> tuple[Array, Array, Array]:
         """Return RMS velocity, peak acceleration and band levels of one run."""
-        energy = (rows.real**2 + rows.imag**2) @ self._weights
+        energy = (np.real(rows) ** 2 + np.imag(rows) ** 2) @ self._weights
         peak = np.full(len(rows), np.nan)
         if acceleration is not None:
             record = fft.irfft(acceleration, self._n, axis=-1)[:, : self._n_steps]
@@ -194,7 +194,7 @@ class _Band:
             square = fft.irfft(whole, self.size, axis=-1, norm="forward") ** 2
         else:
             envelope = fft.ifft(_folded(part, self.size), axis=-1, norm="forward")
-            square = envelope.real**2 + envelope.imag**2
+            square = np.real(envelope) ** 2 + np.imag(envelope) ** 2
         averages = ndimage.uniform_filter1d(square, self.width, axis=-1, mode="wrap")
         return np.sqrt(averages.max(axis=-1))
 

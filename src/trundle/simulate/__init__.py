@@ -3,7 +3,13 @@
 from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
 from trundle.simulate._residual import StaticFlexibility
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
-from trundle.simulate.ensemble import batches, contact_forces, ensemble, runs_with_mean
+from trundle.simulate.ensemble import (
+    batches,
+    contact_force_histories,
+    contact_forces,
+    ensemble,
+    runs_with_mean,
+)
 from trundle.simulate.harmonics import (
     Harmonics,
     Waves,
@@ -37,6 +43,7 @@ __all__ = [
     "TruncationChange",
     "Waves",
     "batches",
+    "contact_force_histories",
     "contact_forces",
     "ensemble",
     "harmonics",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
+from jaxtyping import Float
 
 from trundle._checks import count
 from trundle._typing import Array
@@ -18,7 +19,14 @@ from trundle.simulate.prepared import PreparedFloor
 from trundle.simulate.runs import MeanResponse, Runs
 from trundle.structure import Floor
 
-__all__ = ["LEAST_BATCH", "batches", "contact_forces", "ensemble", "runs_with_mean"]
+__all__ = [
+    "LEAST_BATCH",
+    "batches",
+    "contact_force_histories",
+    "contact_forces",
+    "ensemble",
+    "runs_with_mean",
+]
 
 Progress = Callable[[float], None]
 
@@ -136,6 +144,25 @@ def runs_with_mean(
     road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed, smooth=1)
     record = layout.over(road, progress=progress)
     return _runs_of(layout, record.columns(slice(0, -1)), seed), mean_of(layout, record)
+
+
+def contact_force_histories(
+    layout: Layout, *, runs: range, seed: int
+) -> tuple[Float[Array, "steps contacts runs"], Float[Array, "steps contacts 1"]]:
+    """Return the contact forces of some runs, and those without random roads [N].
+
+    Parameters
+    ----------
+    layout : Layout
+        What the runs share, from `lay_out`.
+    runs : range
+        Numbers of the runs.
+    seed : int
+        Seed of all roads.
+    """
+    road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed, smooth=1)
+    forces = layout.over(road).forces
+    return forces[:, :, :-1], forces[:, :, -1:]
 
 
 def mean_of(layout: Layout, record: Record) -> MeanResponse:

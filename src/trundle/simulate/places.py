@@ -165,9 +165,9 @@ class PlaceResponses:
             modal = (_modal_acceleration if rate else _modal_velocity)(self.propagator, z)
             # what follows at once, by the differences that stepping takes of it
             rest = (z - 2.0 + 1.0 / z) / self.dt**2 if rate else (z - 1.0 / z) / (2.0 * self.dt)
-            for piece, view in ((modal.real, out.real), (modal.imag, out.imag)):
-                driven = piece.astype(kind)[:, :, None] * shapes
-                view[part] = read @ driven
+            for take in (np.real, np.imag):
+                driven = take(modal).astype(kind)[:, :, None] * shapes
+                take(out)[part] = read @ driven  # both are views
             if self.residual is not None:
                 out[part] += (rest[:, :, None] * self.residual[places]).astype(out.dtype)
 

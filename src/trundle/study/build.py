@@ -25,7 +25,8 @@ from trundle.structure import (
     reference_plan,
 )
 from trundle.study import schema
-from trundle.study._relations import relation_problems
+from trundle.study._relations import MAPPED, map_problems, relation_problems
+from trundle.study.maps import MapPlan, map_places
 from trundle.study.model import (
     Assessment,
     Case,
@@ -48,6 +49,7 @@ T = TypeVar("T")
 
 _MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
 _DEFAULT_DRIVE_IN = 3.0  # m
+_MAP_RUNS = 200  # of a map, unless the study says otherwise
 
 
 def load_study(path: Path | str) -> Study:
@@ -91,6 +93,7 @@ class _Builder:
         band, follows = self._band()
         assessment = self._assessment()
         isolations = self._isolations()
+        mapped = self._map(plan, assessment, methods)
         self._unique_names()
         self.problems += relation_problems(
             file, plan, drives, methods, band=band, follows_dt=follows
@@ -122,6 +125,7 @@ class _Builder:
             isolations=isolations,
             methods=tuple(methods.values()),
             assessment=assessment,
+            map=mapped,
             printed=tuple(Printed(**dict(p)) for p in file.items("printed")),
             printed_bounds=tuple(PrintedBound(**dict(p)) for p in file.items("printed_bound")),
             notes=tuple(Note(**dict(n)) for n in file.items("note")),
@@ -321,6 +325,42 @@ class _Builder:
             percentile=section.percentile,
             averaging=section.averaging,
             events=section.events,
+        )
+
+    def _map(
+        self,
+        plan: FloorPlan | None,
+        assessment: Assessment | None,
+        methods: dict[str, MethodPlan],
+    ) -> MapPlan | None:
+        section = self.file.tables.get("map")
+        if section is None or plan is None or self.file.general is None:
+            return None
+        if "criteria" not in self.file.tables:
+            self.problems.append(
+                Problem(
+                    place="map",
+                    value="no [criteria]",
+                    rule="a map holds the floor against criteria",
+                    remedy="add [criteria] with method and curves",
+                )
+            )
+        if assessment is None:
+            return None
+        self.problems += map_problems(section, plan, assessment, methods.get(assessment.method))
+        curves = tuple(c for c in assessment.criteria if c.quantity in MAPPED)
+        names = [c.name for c in curves if c.axis != "horizontal"]
+        if not names:
+            return None
+        wanted = section.criterion or ("VC-B" if "VC-B" in names else names[-1])
+        return MapPlan(
+            x=map_places(plan.x_extent, section.spacing, plan.y_extent),
+            y=map_places(plan.y_extent, section.spacing, plan.x_extent),
+            runs=min(section.runs or _MAP_RUNS, self.file.general.runs),
+            criteria=curves,
+            criterion=wanted,
+            percentile=assessment.percentile,
+            averaging=assessment.averaging,
         )
 
     def _isolations(self) -> dict[str, Isolation]:

@@ -9,8 +9,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExec
 from threadpoolctl import threadpool_limits
 
 from trundle._threads import n_threads
-from trundle.simulate import Layout
-from trundle.study.jobs import Job, compute
+from trundle.study.jobs import Job, LaidOut, compute
 from trundle.study.pieces import Piece
 
 __all__ = ["compute_here"]
@@ -24,7 +23,7 @@ class _StoppedError(Exception):
 
 def compute_here(
     missing: Mapping[Job, list[int]],
-    lay_out: Callable[[Job], Layout],
+    lay_out: Callable[[Job], LaidOut],
     *,
     begin: Callable[[Job], None],
     progress: Callable[[str, float], None],
@@ -54,7 +53,7 @@ def compute_here(
             for future in wait(running, return_when=FIRST_COMPLETED).done:
                 done(running.pop(future), future.result())
 
-    def run(job: Job, layout: Layout, part: int) -> Piece:
+    def run(job: Job, laid_out: LaidOut, part: int) -> Piece:
         """Compute a part, in a thread."""
 
         def tell(share: float) -> None:
@@ -63,7 +62,7 @@ def compute_here(
                 raise _StoppedError
             progress(job.pieces[part], share)
 
-        return compute(job, layout, part, tell)
+        return compute(job, laid_out, part, tell)
 
     def carry_out(jobs: list[Job], pool: Executor, at_once: int) -> None:
         """Compute what is missing of some jobs."""

@@ -20,17 +20,20 @@ from trundle.signals import Averaging, Isolation
 from trundle.simulate import (
     Crossing,
     Layout,
+    PlaceResponses,
     PreparedFloor,
     harmonics,
     lay_out,
+    lay_out_places,
     runs_with_mean,
     truncation_change,
 )
 from trundle.simulate.ensemble import runs_at_once
+from trundle.study.maps import MapPlan, map_piece
 from trundle.study.model import Case, MethodPlan, Study
 from trundle.study.pieces import Piece, exact_piece, runs_piece
 
-__all__ = ["Job", "compute", "lay_out_job", "plan_jobs"]
+__all__ = ["Job", "LaidOut", "compute", "lay_out_job", "plan_jobs"]
 
 Progress = Callable[[float], None]
 
@@ -72,6 +75,8 @@ class Job:
         Spectra that the criteria ask for.
     isolations : mapping of str to Isolation
         What stands between floor and tool at some of the points.
+    map : MapPlan or None
+        What is mapped over the floor, by the method that carries the verdict.
     """
 
     name: str
@@ -87,12 +92,15 @@ class Job:
     averaging: Averaging
     quantities: tuple[SpectrumQuantity, ...]
     isolations: Mapping[str, Isolation]
+    map: MapPlan | None
 
     @property
     def pieces(self) -> tuple[str, ...]:
         """One name for what each part leaves, unique in the study."""
-        exact = (f"{self.name}-exact",) if self.n_waves else ()
-        return (*(f"{self.name}-runs{i:04d}" for i in range(len(self.parts))), *exact)
+        names = [f"{self.name}-runs{i:04d}" for i in range(len(self.parts))]
+        names += [f"{self.name}-exact"] if self.n_waves else []
+        names += [f"{self.name}-map"] if self.map is not None else []
+        return tuple(names)
 
     @property
     def modal(self) -> bool:
@@ -107,7 +115,12 @@ class Job:
         contacts = sum(crossing.vehicle.n_contacts for crossing in self.crossings)
         step = (2.0 + contacts) * size * self.duration / integration.dt
         waves = 2 * self.n_waves * len(self.crossings)
-        return tuple(step * (100 + n) for n in [*map(len, self.parts), *([waves] if waves else [])])
+        columns = [len(part) for part in self.parts] + ([waves] if waves else [])
+        found = [step * (100 + n) for n in columns]
+        if self.map is not None:
+            answers = len(self.map.places) * (60 + self.map.runs * len(self.factors))
+            found.append(0.15 * len(self.crossings) * answers * self.duration / integration.dt)
+        return tuple(found)
 
 
 def plan_jobs(study: Study) -> tuple[Job, ...]:
@@ -154,53 +167,74 @@ def _job(
         averaging=study.assessment.averaging if study.assessment else "max_1s",
         quantities=spectra_asked_for(study.assessment.criteria) if study.assessment else (),
         isolations=study.isolations,
+        map=study.map if study.assessment and study.assessment.method == method.name else None,
     )
 
 
-def lay_out_job(job: Job, floor: PreparedFloor) -> Layout:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LaidOut:
+    """Hold what all parts of a job share: its layout, and the way to the places of its map."""
+
+    layout: Layout
+    places: PlaceResponses | None
+
+
+def lay_out_job(job: Job, floor: PreparedFloor) -> LaidOut:
     """Lay out what all parts of a job share."""
-    return lay_out(
+    layout = lay_out(
         floor,
         job.crossings,
         method=job.method.interaction,
         points=job.points,
         duration=job.duration,
     )
+    places = None if job.map is None else lay_out_places(floor, layout, job.map.places)
+    return LaidOut(layout=layout, places=places)
 
 
-def compute(job: Job, layout: Layout, part: int, progress: Progress | None = None) -> Piece:
+def compute(job: Job, laid_out: LaidOut, part: int, progress: Progress | None = None) -> Piece:
     """Compute one part of a job; the same bits wherever and whenever.
 
     Parameters
     ----------
     job : Job
         The job.
-    layout : Layout
-        Its layout.
+    laid_out : LaidOut
+        What its parts share.
     part : int
         Which of its pieces.
     progress : callable, optional
         Told the share done.
     """
-    factors = list(job.factors.values())
+    layout, factors = laid_out.layout, list(job.factors.values())
     if part < len(job.parts):
-        runs, mean = runs_with_mean(
-            layout, runs=job.parts[part], seed=job.seed, progress=_part(progress, 0.8)
-        )
-        first = part == 0 and job.modal
-        change = truncation_change(layout, runs, job.parts[0]) if first else None
-        runs = behind_isolators(runs, job.isolations)
-        mean = behind_isolators(mean, job.isolations)
-        reduced = reduce_rougher(
-            runs, mean, factors, averaging=job.averaging, quantities=job.quantities
-        )
-        history = runs.part(slice(0, 1)) if part == 0 else None
-        histories = [] if history is None else [history.rougher(mean, f) for f in factors]
-        return runs_piece(runs, reduced, histories, truncation=change)
+        return _runs(job, layout, part, progress)
+    if job.pieces[part].endswith("-map"):
+        assert job.map is not None  # its piece is named
+        assert laid_out.places is not None  # laid out with it
+        return map_piece(job.map, layout, laid_out.places, factors, job.seed, progress=progress)
     answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
     answers = (behind_isolators(answer, job.isolations) for answer in answers)
     exact = exact_statistics(answers, f_max=layout.f_max)
     return exact_piece(exact, factors)
+
+
+def _runs(job: Job, layout: Layout, part: int, progress: Progress | None) -> Piece:
+    """Run some roads, and keep what is reported of them."""
+    factors = list(job.factors.values())
+    runs, mean = runs_with_mean(
+        layout, runs=job.parts[part], seed=job.seed, progress=_part(progress, 0.8)
+    )
+    first = part == 0 and job.modal
+    change = truncation_change(layout, runs, job.parts[0]) if first else None
+    runs = behind_isolators(runs, job.isolations)
+    mean = behind_isolators(mean, job.isolations)
+    reduced = reduce_rougher(
+        runs, mean, factors, averaging=job.averaging, quantities=job.quantities
+    )
+    history = runs.part(slice(0, 1)) if part == 0 else None
+    histories = [] if history is None else [history.rougher(mean, f) for f in factors]
+    return runs_piece(runs, reduced, histories, truncation=change)
 
 
 def _part(progress: Progress | None, length: float) -> Progress | None:

@@ -12,6 +12,7 @@ from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.structure import Floor, FloorPlan
 from trundle.study import schema
+from trundle.study.maps import MapPlan
 from trundle.vehicle import Vehicle
 
 __all__ = [
@@ -169,6 +170,8 @@ class Study:
         The methods, in the order of the file.
     assessment : Assessment or None
         What the response is held against.
+    map : MapPlan or None
+        What is mapped over the floor.
     printed, printed_bounds, notes : tuple
         Published values to hold beside ours, and notes.
     """
@@ -191,6 +194,7 @@ class Study:
     isolations: Mapping[str, Isolation]
     methods: tuple[MethodPlan, ...]
     assessment: Assessment | None
+    map: MapPlan | None
     printed: tuple[Printed, ...]
     printed_bounds: tuple[PrintedBound, ...]
     notes: tuple[Note, ...]

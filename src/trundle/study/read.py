@@ -22,6 +22,7 @@ _TABLES: dict[str, Any] = {
     "floor": schema.FloorSection,
     "roughness": schema.RoughnessSection,
     "criteria": schema.CriteriaSection,
+    "map": schema.MapSection,
 }
 _NAMED_TABLES: dict[str, Any] = {"vehicle": schema.VehicleSection}
 _LISTS: dict[str, Any] = {
@@ -51,7 +52,7 @@ class StudyFile:
     general : GeneralSection or None
         The keys above the first table.
     tables : dict of str to Section
-        ``floor``, ``roughness``, ``criteria``.
+        ``floor``, ``roughness``, ``criteria``, ``map``.
     vehicles : dict of str to Section
         Vehicle sections by name.
     lists : dict of str to list of (int, Section)

@@ -13,6 +13,7 @@ from trundle.structure import Floor
 from trundle.study.cells import Cell, CellKey
 from trundle.study.in_threads import compute_here
 from trundle.study.jobs import Job, lay_out_job, plan_jobs
+from trundle.study.maps import StudyMap, map_of
 from trundle.study.mode_cache import modes_of
 from trundle.study.model import Study
 from trundle.study.pieces import Piece, cell_of
@@ -37,6 +38,8 @@ class StudyResult:
         Every cell.
     verdicts : mapping of CellKey to tuple of Verdict
         Verdicts of the cells of the assessed method.
+    maps : mapping of CellKey to StudyMap
+        Maps of the cells of the assessed method, where the study asks for them.
     modes : Modes or None
         Natural modes of the floor, where a method used them.
     """
@@ -44,6 +47,7 @@ class StudyResult:
     study: Study
     cells: Mapping[CellKey, Cell]
     verdicts: Mapping[CellKey, tuple[Verdict, ...]]
+    maps: Mapping[CellKey, StudyMap]
     modes: Modes | None
 
     def warnings(self) -> dict[str, tuple[FitnessWarning, ...]]:
@@ -120,18 +124,27 @@ def _result(
     study: Study, jobs: tuple[Job, ...], store: PieceStore, modes: Modes | None
 ) -> StudyResult:
     found: dict[CellKey, Cell] = {}
+    maps: dict[CellKey, StudyMap] = {}
     for job in jobs:
         pieces = [store.load(name) for name in job.pieces]
         for i, (road, factor) in enumerate(job.factors.items()):
             key = CellKey(job.case.name, road, job.method.name)
             found[key] = cell_of(key, i, factor, pieces)
+            if job.map is not None:
+                maps[key] = map_of(job.map, pieces[-1], i)
     cells = {key: found[key] for key in _keys(study)}
     verdicts = {
         key: _assess(study, cell)
         for key, cell in cells.items()
         if study.assessment is not None and key.method == study.assessment.method
     }
-    return StudyResult(study=study, cells=cells, verdicts=verdicts, modes=modes)
+    return StudyResult(
+        study=study,
+        cells=cells,
+        verdicts=verdicts,
+        maps={key: maps[key] for key in cells if key in maps},
+        modes=modes,
+    )
 
 
 class _Floors:

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from trundle.errors import ComputationError, InputError
-from trundle.simulate import Layout, PreparedFloor, prepare
+from trundle.simulate import PreparedFloor, prepare
 from trundle.structure import Floor
-from trundle.study.jobs import Job, compute, lay_out_job
+from trundle.study.jobs import Job, LaidOut, compute, lay_out_job
 from trundle.study.pieces import Piece
 
 __all__ = ["Cluster", "cluster_at", "local_cluster"]
@@ -30,7 +30,7 @@ class Cluster:
         self._sent: dict[int, Any] = {}  # by the identity of what was sent
         self._pending: dict[Any, _Sent] = {}
 
-    def submit(self, job: Job, parts: Iterable[int], carrier: Layout | Floor) -> None:
+    def submit(self, job: Job, parts: Iterable[int], carrier: LaidOut | Floor) -> None:
         """Send parts of a job; its layout, or its floor, travels once to each worker.
 
         Parameters
@@ -39,7 +39,7 @@ class Cluster:
             The job.
         parts : iterable of int
             Which of its parts.
-        carrier : Layout or Floor
+        carrier : LaidOut or Floor
             Its layout, or the floor that a worker prepares for itself.
         """
         for part in parts:
@@ -101,7 +101,7 @@ class _Sent:
 
     job: Job
     part: int
-    carrier: Layout | Floor
+    carrier: LaidOut | Floor
     tries: int
 
     @property
@@ -112,9 +112,9 @@ class _Sent:
 _kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last floor it prepared
 
 
-def _compute(job: Job, carrier: Layout | Floor, part: int) -> Piece:
+def _compute(job: Job, carrier: LaidOut | Floor, part: int) -> Piece:
     """Compute a part, in a worker."""
-    if isinstance(carrier, Layout):
+    if isinstance(carrier, LaidOut):
         return compute(job, carrier, part)
     interaction = job.method.interaction
     key = (carrier.content_hash, str(interaction))

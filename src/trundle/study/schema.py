@@ -43,6 +43,7 @@ __all__ = [
     "FloorSection",
     "GeneralSection",
     "IsolatorSection",
+    "MapSection",
     "MethodSection",
     "NoteSection",
     "PlanFloorSection",
@@ -259,6 +260,14 @@ class CriteriaSection(Section):
     averaging: Literal["max_1s", "slow", "fast", "event"] = "max_1s"
     events: Annotated[Number, Field(ge=1.0, le=1e6)] = 1.0
     files: tuple[Line, ...] = ()
+
+
+class MapSection(Section):
+    """What is mapped over the whole floor, by the method that carries the verdict."""
+
+    spacing: PositiveLength | None = None
+    runs: Annotated[Whole, Field(ge=1, le=_MANY)] | None = None
+    criterion: str | None = None
 
 
 class PrintedSection(Section):

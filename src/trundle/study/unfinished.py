@@ -26,7 +26,7 @@ from trundle.study.pieces import Piece
 __all__ = ["InMemory", "OnDisk", "PieceStore", "unfinished_folder", "unfinished_of"]
 
 _MARK = "trundle-unfinished.json"
-_FORMAT = 2  # of the pieces; another one starts anew
+_FORMAT = 3  # of the pieces; another one starts anew
 
 
 @runtime_checkable

@@ -1,0 +1,76 @@
+"""The map of a study: what it holds, what it is refused for, and that it is not another verdict."""
+
+import numpy as np
+import pytest
+from test_bad_input import GOOD
+
+from trundle.errors import StudyError
+from trundle.simulate import ensemble
+from trundle.study import load_study
+from trundle.study.run import run_study
+
+MAP = '\n[map]\nspacing = "3 m"\ncriterion = "VC-A"\n'
+LONG = GOOD.replace('duration = "4 s"', 'duration = "14 s"').replace('"30 Hz"', '"90 Hz"')
+
+
+def study_of(tmp_path, text):
+    path = tmp_path / "study.toml"
+    path.write_text(text)
+    return load_study(path)
+
+
+def test_a_place_of_the_map_is_what_a_point_there_gives(tmp_path):
+    """A point of the study at a place of the map: the same runs, the same verdict within 1 %."""
+    text = LONG.replace('at = ["3 m", "3 m"]', 'at = ["1.5 m", "4.5 m"]')
+    study = study_of(tmp_path, text + MAP)
+    at = int(np.abs(study.map.places - [1.5, 4.5]).sum(axis=1).argmin())
+    np.testing.assert_allclose(study.map.places[at], [1.5, 4.5])
+    result = run_study(study)
+    (mapped,), ((verdict,),) = result.maps.values(), result.verdicts.values()
+    assert mapped.classes.margin[0, at] == pytest.approx(verdict.margin, rel=0.01)
+    assert mapped.classes.share_exceeding[0, at] == verdict.share_exceeding
+    assert mapped.classes.governing_band[0, at] == pytest.approx(verdict.governing_band)
+    (cell,) = result.cells.values()
+    expected = np.percentile(cell.rms_velocity[:, 0], 95.0)
+    assert mapped.rms_velocity[at] == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_rougher_road_has_its_own_map(tmp_path):
+    """Class C shares the runs of class B: against an ensemble that drives over class C."""
+    text = LONG.replace("[[point]]", '[[road]]\nclass = "C"\n\n[[point]]', 1)
+    study = study_of(tmp_path, text.replace('["VC-A"]', '["VC-A", "stepper-B"]') + MAP)
+    result = run_study(study)
+    case, method = study.cases[0], study.methods[0]
+    points = {f"p{i}": tuple(p) for i, p in enumerate(study.map.places)}
+    alone = ensemble(
+        study.floor, study.crossings(case, "C", method), method=method.interaction,
+        points=points, n_runs=study.runs, seed=study.seed, duration=study.duration,
+    )  # fmt: skip
+    (mapped,) = (m for key, m in result.maps.items() if key.road == "C")
+    peaks = np.percentile(alone.peak_acceleration(), 95.0, axis=0)
+    np.testing.assert_allclose(mapped.peak_acceleration, peaks, rtol=1e-3)
+    stepper = mapped.classes.index("stepper-B")
+    np.testing.assert_allclose(mapped.classes.margin[stepper], 0.001 / peaks, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (LONG + MAP.replace('"VC-A"', '"VC-Z"'), "map.criterion"),
+        (LONG + MAP.replace('"3 m"', '"1 mm"'), "20000 places"),
+        (LONG.replace('["VC-A"]', '["VC-A"]\naveraging = "slow"') + MAP, "max_1s or event"),
+        (LONG.replace('["VC-A"]', '["R-office"]') + "\n[map]\n", "no curve that can be mapped"),
+        (LONG[: LONG.index("[criteria]")] + MAP, "add \\[criteria\\]"),
+        (
+            LONG.replace(
+                'f_max = "90 Hz"', 'integration = "newmark"'
+            ).replace('{ ratio = "3 %" }', '{ rayleigh_alpha = "0.8 1/s", rayleigh_beta = "0.001 s" }')
+            + MAP,
+            "modal superposition",
+        ),
+        (LONG + MAP.replace("spacing", "spacin"), "did you mean 'spacing'"),
+    ],
+)  # fmt: skip
+def test_maps_that_cannot_be_are_refused(tmp_path, text, told):
+    with pytest.raises(StudyError, match=told):
+        study_of(tmp_path, text)

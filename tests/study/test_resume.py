@@ -44,6 +44,9 @@ interaction = "coupled"
 integration = "newmark"
 dt = "5 ms"
 damping = { rayleigh_alpha = "0.8 1/s", rayleigh_beta = "0.001 s" }
+
+[map]
+spacing = "3 m"
 """
 )
 

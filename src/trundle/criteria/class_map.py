@@ -55,15 +55,16 @@ class ClassMap:
 
         One criterion is stricter than another whose smallest limit is larger.
         """
-        order = sorted(
-            (i for i, c in enumerate(self.criteria) if c.quantity == "band_rms_velocity"),
-            key=lambda i: -float(self.criteria[i].limits.min()),
-        )
         found = np.full(self.margin.shape[1], -1)
-        for i in order:
+        for i in self.order():
             if self.complete[i]:
                 found[self.margin[i] >= 1.0] = i
         return found
+
+    def order(self) -> list[int]:
+        """Return which criteria are of velocity, from the widest to the strictest."""
+        velocity = (i for i, c in enumerate(self.criteria) if c.quantity == "band_rms_velocity")
+        return sorted(velocity, key=lambda i: -float(self.criteria[i].limits.min()))
 
     def index(self, name: str) -> int:
         """Return the place of a criterion by its name."""

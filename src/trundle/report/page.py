@@ -11,8 +11,16 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from trundle.report import figures_floor, figures_response, figures_road, figures_vehicle
+from trundle.report import (
+    figures_floor,
+    figures_map,
+    figures_response,
+    figures_road,
+    figures_vehicle,
+)
 from trundle.report.canvas import STYLE, Picture, save
+from trundle.report.interactive import plotly_script
+from trundle.report.map_data import map_payload, map_views
 from trundle.report.tables import (
     bound_rows,
     comparison_rows,
@@ -75,6 +83,7 @@ def _figures(result: StudyResult) -> Iterator[Drawing]:
     yield from _road_figures(result)
     yield from _vehicle_figures(result)
     yield from _response_figures(result)
+    yield from _map_figures(result)
 
 
 def _floor_figures(result: StudyResult) -> Iterator[Drawing]:
@@ -224,6 +233,25 @@ def _response_figures(result: StudyResult) -> Iterator[Drawing]:
         )
 
 
+def _map_figures(result: StudyResult) -> Iterator[Drawing]:
+    plan = result.study.map
+    if plan is None or not result.maps:
+        return
+    views = map_views(result)
+    about = (
+        f"{len(plan.places)} places, level that {plan.percentile:g} % of {plan.runs} runs stay "
+        f"below, averaging {plan.averaging}; routes dashed, points crossed, columns grey."
+    )
+    yield (
+        Picture(name="map_classes", title="Class map", caption=f"Strictest criterion met. {about}"),
+        lambda: figures_map.class_map_figure(result.study, views),
+    )
+    yield (
+        Picture(name="map_margin", title=f"Margin to {plan.criterion}", caption=about),
+        lambda: figures_map.criterion_map_figure(result.study, views),
+    )
+
+
 def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
     environment = Environment(
         loader=PackageLoader("trundle.report"),
@@ -245,6 +273,8 @@ def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
         summary=summary_rows(result),
         exact=exact_rows(result),
         truncation=truncation_rows(result),
+        map=map_payload(result),
+        plotly=plotly_script() if result.maps else "",
         columns=columns,
         matrix=matrix,
         verdict=_headline(result),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Complex, Float
@@ -66,6 +66,15 @@ class FloorMap:
     def n_runs(self) -> int:
         """Number of runs."""
         return len(self.rms_velocity)
+
+    def part(self, runs: slice) -> FloorMap:
+        """Return some of the runs."""
+        return replace(
+            self,
+            band_levels=self.band_levels[runs],
+            rms_velocity=self.rms_velocity[runs],
+            peak_acceleration=self.peak_acceleration[runs],
+        )
 
 
 def floor_map(

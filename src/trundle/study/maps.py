@@ -114,23 +114,18 @@ def map_piece(
     progress: Callable[[float], None] | None = None,
 ) -> Piece:
     """Map a case on every road, and keep what is drawn of it."""
-    arrays: dict[str, Array] = {}
     forces, mean = contact_force_histories(layout, runs=range(plan.runs), seed=seed)
-    for i, factor in enumerate(factors):
-
-        def tell(share: float, i: int = i) -> None:
-            """Tell the share of all roads' maps that is done."""
-            if progress is not None:
-                progress((i + share) / len(factors))
-
-        found = floor_map(
-            places,
-            mean + factor * (forces - mean),
-            f_max=layout.f_max,
-            averaging=plan.averaging,
-            peaks=plan.peaks,
-            progress=tell,
-        )
+    every = floor_map(  # all roads beside each other: the floor answers them alike
+        places,
+        np.concatenate([mean + factor * (forces - mean) for factor in factors], axis=2),
+        f_max=layout.f_max,
+        averaging=plan.averaging,
+        peaks=plan.peaks,
+        progress=progress,
+    )
+    arrays: dict[str, Array] = {}
+    for i in range(len(factors)):
+        found = every.part(slice(i * plan.runs, (i + 1) * plan.runs))
         held = class_map(found, plan.criteria, percentile=plan.percentile, f_max=layout.f_max)
         arrays |= {f"{i}.{name}": getattr(held, name) for name in _ARRAYS}
         arrays[f"{i}.complete"] = np.array(held.complete)

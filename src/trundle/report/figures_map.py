@@ -1,0 +1,124 @@
+"""Draw what a study maps over its floor: classes, margins, shares of runs above a limit."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
+from matplotlib.patches import Patch
+from matplotlib.ticker import StrMethodFormatter
+
+from trundle._typing import Array
+from trundle.criteria import ClassMap
+from trundle.report.canvas import COLOURS, new_figure
+from trundle.report.map_data import MapView, class_scale
+from trundle.study.maps import MapPlan
+from trundle.study.model import Study
+
+__all__ = ["class_map_figure", "criterion_map_figure"]
+
+_COLUMNS = 4
+
+
+def class_map_figure(study: Study, views: list[MapView]) -> Figure:
+    """Draw the strictest velocity criterion that is passed at every place of every view."""
+    plan = study.map
+    assert plan is not None  # there are views
+    names, colours = class_scale(views[0].classes)
+    figure, panels = _panels(study, views)
+    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
+    for panel, view in zip(panels, views, strict=True):
+        levels = _ranks(view.classes)
+        _image(panel, study, plan, levels, view.routes, cmap=ListedColormap(colours), norm=norm)
+    shown = sorted({int(r) for view in views for r in _ranks(view.classes)})
+    figure.legend(
+        handles=[
+            Patch(facecolor=colours[i], edgecolor="#7F7F7F", label=names[i])
+            for i in reversed(shown)
+        ],
+        loc="outside lower center",
+        ncols=min(len(shown), 6),
+        title="strictest criterion met",
+    )
+    return figure
+
+
+def criterion_map_figure(study: Study, views: list[MapView]) -> Figure:
+    """Draw the margin to one criterion at every place of every view; below 1 it fails."""
+    plan = study.map
+    assert plan is not None  # there are views
+    figure, panels = _panels(study, views)
+    image = None
+    for panel, view in zip(panels, views, strict=True):
+        margin = view.classes.margin[view.classes.index(plan.criterion)]
+        image = _image(
+            panel,
+            study,
+            plan,
+            np.clip(margin, 0.1, 10.0),
+            view.routes,
+            cmap="PuOr",
+            norm=LogNorm(0.1, 10.0),
+        )
+        grid = margin.reshape(len(plan.y), len(plan.x))
+        if np.nanmin(grid) < 1.0 < np.nanmax(grid):
+            panel.contour(plan.x, plan.y, grid, levels=[1.0], colors="black", linewidths=1.2)
+    if image is not None:
+        bar = figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
+        bar.set_label(f"margin to {plan.criterion} = limit / level (below 1 fails; line at 1)")
+        bar.set_ticks([0.1, 0.3, 1.0, 3.0, 10.0])
+        bar.ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    return figure
+
+
+def _ranks(classes: ClassMap) -> Array:
+    """Return 0 for none, then the criteria from the widest to the strictest."""
+    order = {-1: 0, **{index: i + 1 for i, index in enumerate(classes.order())}}
+    return np.array([order[int(i)] for i in classes.classes()])
+
+
+def _panels(study: Study, views: list[MapView]) -> tuple[Figure, list[Axes]]:
+    (x0, x1), (y0, y1) = study.plan.x_extent, study.plan.y_extent
+    columns = min(_COLUMNS, len(views))
+    rows = -(-len(views) // columns)
+    width = 8.4 / columns
+    height = min(max(width * (y1 - y0) / (x1 - x0), 1.0), 5.0)
+    figure, panels = new_figure(
+        8.8, rows * (height + 0.3) + 1.1, rows=rows, columns=columns, share="xy"
+    )
+    for panel in panels[len(views) :]:
+        panel.set_visible(False)
+    for panel, view in zip(panels, views, strict=False):
+        panel.set_title(view.title, fontsize=9)
+        panel.grid(visible=False)
+    for i, panel in enumerate(panels[: len(views)]):
+        panel.set(xlabel="x [m]" if i + columns >= len(views) else "")
+        panel.set(ylabel="y [m]" if i % columns == 0 else "")
+        panel.tick_params(labelbottom=i + columns >= len(views))
+    return figure, panels[: len(views)]
+
+
+def _image(
+    panel: Axes, study: Study, plan: MapPlan, values: Array, routes: tuple[str, ...], **look: object
+) -> AxesImage:
+    extent = (*study.plan.x_extent, *study.plan.y_extent)
+    image = panel.imshow(
+        values.reshape(len(plan.y), len(plan.x)),
+        origin="lower",
+        extent=extent,
+        interpolation="nearest",
+        aspect="equal",
+        **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
+    )
+    for name in routes:
+        line = study.drives[name].route.points.T
+        panel.plot(*line, color="white", linewidth=2.4)
+        panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
+    for place in study.points.values():
+        panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")
+    if study.plan.column:
+        x, y = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
+        panel.plot(x.ravel(), y.ravel(), "s", markersize=2, color=COLOURS[7])
+    return image

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from functools import cache
-from typing import Any
+from typing import Any, Literal
 
 from trundle.errors import InputError
 
@@ -18,6 +18,7 @@ __all__ = [
     "GAL",
     "KMH",
     "MICROMETRE_PER_SECOND",
+    "motion_scale",
     "to_si",
 ]
 
@@ -61,6 +62,7 @@ _COUNTED = {
 }
 _CYCLIC = ("frequency", "wavenumber")
 _UNIT_CHARACTERS = re.compile(r"^[A-Za-zµμ%/*^()·\s\d²³-]*$")
+_GRAVITY = re.compile(r"\bgn?\b")  # in a unit of motion g is gravity, not a gram
 _POWER = re.compile(r"(?<=[A-Za-zµμ])([23])\b")
 
 
@@ -147,3 +149,62 @@ def _registry() -> tuple[Any, Any]:
     registry.define("cycle = 1")
     registry.define("Ns = newton * second")
     return registry, pint
+
+
+def motion_scale(
+    unit: str, sensitivity: str = ""
+) -> tuple[float, Literal["acceleration", "velocity"]]:
+    """Return the factor that turns samples into SI, and what they are of.
+
+    Parameters
+    ----------
+    unit : str
+        Unit of the samples, with a number before it or not: ``mm/s``, ``20 m/s2``, ``mV``, ``1``.
+    sensitivity : str
+        Of the sensor, for samples that are volts (or counts): ``10 V/(m/s2)``, ``1000 mV/g``.
+
+    Raises
+    ------
+    InputError
+        A unit of neither acceleration nor velocity.
+
+    Examples
+    --------
+    >>> motion_scale("mV", "100 mV/(m/s2)")
+    (0.01, 'acceleration')
+    """
+    registry, _ = _registry()
+    quantity = _parsed(unit, registry)
+    if sensitivity:
+        quantity = quantity / _parsed(sensitivity, registry)
+    kinds: tuple[tuple[str, Literal["acceleration", "velocity"]], ...] = (
+        ("m/s**2", "acceleration"),
+        ("m/s", "velocity"),
+    )
+    for si, kind in kinds:
+        if quantity.is_compatible_with(si):
+            return float(f"{quantity.to(si).magnitude:.12g}"), kind
+    told = f"{unit!r}" + (f" with sensitivity {sensitivity!r}" if sensitivity else "")
+    raise InputError(
+        f"unit {told} is neither acceleration nor velocity; write such as 'mm/s2', 'um/s', or 'V' "
+        "with a sensitivity such as '10 V/(m/s2)'"
+    )
+
+
+def _parsed(text: str, registry: Any) -> Any:
+    """Return a quantity; a bare unit counts once."""
+    match = re.match(
+        r"^\s*(?P<number>[+-]?[\d.]+(?:[eE][+-]?\d{1,3})?)?\s*(?P<unit>.{0,40})$", text
+    )
+    unit = (match["unit"] if match else "").strip()
+    if match is None or not _UNIT_CHARACTERS.match(unit):
+        raise InputError(f"{text!r} is not understood; write such as 'mm/s2' or '10 V/(m/s2)'")
+    spelled = unit.replace("·", "*").replace("²", "**2").replace("³", "**3").replace("^", "**")
+    spelled = _GRAVITY.sub("standard_gravity", _POWER.sub(r"**\1", spelled))
+    try:
+        number = float(match["number"] or 1.0)
+        return number * (registry.parse_units(spelled) if spelled else registry.dimensionless)
+    except Exception:  # pint raises half a dozen unrelated types on text it cannot parse
+        raise InputError(
+            f"unit {unit!r} is unknown; write such as 'mm/s2', 'um/s' or 'V'"
+        ) from None

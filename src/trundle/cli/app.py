@@ -81,6 +81,73 @@ def run(
 
 
 @app.command()
+def assess(
+    files: Annotated[
+        list[Path],
+        typer.Argument(help="Records: CSV, WAV, UFF 58 or miniSEED.", metavar="RECORD..."),
+    ],
+    *,
+    unit: Annotated[
+        str, typer.Option("--unit", help="Unit of the samples, if no heading says it: mm/s2, V.")
+    ] = "",
+    rate: Annotated[
+        str, typer.Option("--rate", help="Sampling rate, if there is no time column: '500 Hz'.")
+    ] = "",
+    sensitivity: Annotated[
+        str, typer.Option("--sensitivity", help="Of the sensor: '10 V/(m/s2)', '1000 mV/g'.")
+    ] = "",
+    full_scale: Annotated[
+        str, typer.Option("--full-scale", help="What a WAV file's largest number is: '20 m/s2'.")
+    ] = "",
+    criteria: Annotated[
+        str,
+        typer.Option(
+            "--criteria",
+            "-c",
+            help="Names and files (TOML, CSV) between commas. [default: workshop to VC-E]",
+        ),
+    ] = "",
+    averaging: Annotated[
+        str, typer.Option("--averaging", help="max_1s, slow, fast or event.")
+    ] = "max_1s",
+    high_pass: Annotated[
+        str, typer.Option("--high-pass", help="Motion below this frequency is drift.")
+    ] = "0.5 Hz",  # noqa: S107 - a filter, not a password
+    simulation: Annotated[
+        Path | None,
+        typer.Option("--simulation", help="Results folder of a study, to lay the record over."),
+    ] = None,
+    point: Annotated[
+        str | None, typer.Option("--point", help="Point of that study. [default: its first]")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Results folder. [default: RECORD's name + '-results']"),
+    ] = None,
+) -> None:
+    """Assess measured records against the same criteria, with the same levels and figures.
+
+    A CSV heading such as 'time [s], z [mm/s2]' says all; else --unit and --rate do. A record that
+    cannot be right (gaps, numbers missing, two rates) is refused; one that is clipped, short, slow
+    or cut off in motion is assessed with a warning.
+    """
+    from trundle.cli import assess_command
+    from trundle.study.read_record import RecordOptions
+
+    options = RecordOptions(unit=unit, rate=rate, sensitivity=sensitivity, full_scale=full_scale)
+    assess_command.assess(
+        files,
+        options,
+        criteria=criteria,
+        averaging=averaging,
+        high_pass=high_pass,
+        simulation=simulation,
+        point=point,
+        out=out,
+    )
+
+
+@app.command()
 def check(study: StudyPath) -> None:
     """Check a study: every mistake at once with its remedy, or a summary and a plan sketch."""
     from trundle.cli import commands

@@ -1,6 +1,7 @@
 """Draw figures and write the report of a study."""
 
 from trundle.report.page import write_report
+from trundle.report.record_page import record_rows, write_record_report
 from trundle.report.tables import (
     bound_rows,
     comparison_rows,
@@ -13,7 +14,9 @@ __all__ = [
     "bound_rows",
     "comparison_rows",
     "exact_rows",
+    "record_rows",
     "summary_rows",
     "verdict_matrix",
+    "write_record_report",
     "write_report",
 ]

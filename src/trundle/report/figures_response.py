@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from trundle.criteria import Criterion
 from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
 from trundle.report.tables import ComparisonRow
+from trundle.signals import Averaging
 from trundle.study.cells import CellKey
 from trundle.study.run import StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
@@ -18,7 +19,9 @@ from trundle.units import GAL, MICROMETRE_PER_SECOND
 __all__ = [
     "acceleration_criteria_figure",
     "comparison_figure",
+    "draw_criterion",
     "history_figure",
+    "rule_name",
     "velocity_criteria_figure",
 ]
 
@@ -46,8 +49,9 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     criteria = result.study.assessment.criteria if result.study.assessment else ()
     for criterion in criteria:
         if criterion.quantity == "band_rms_velocity":
-            _draw_curve(axes, criterion)
+            draw_criterion(axes, criterion)
     i = list(result.study.points).index(point)
+    spectra_rule = result.study.assessment.averaging if result.study.assessment else "max_1s"
     for number, case in enumerate(result.study.cases):
         spectra = result.cells[CellKey(case.name, road, method)].spectra
         low, middle, high = (spectra.percentile(p)[i] for p in (5.0, 50.0, 95.0))
@@ -69,7 +73,7 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     axes.set(
         xlim=(0.9, 130.0),
         xlabel="mid-band frequency [Hz]",
-        ylabel=f"RMS velocity in one-third octaves [um/s]\n({_rule(result)})",
+        ylabel=f"RMS velocity in one-third octaves [um/s]\n({rule_name(spectra_rule)})",
     )
     axes.set_ylim(bottom=max(axes.get_ylim()[0], 0.01))
     axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
@@ -81,18 +85,19 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     return figure
 
 
-def _rule(result: StudyResult) -> str:
+def rule_name(averaging: Averaging) -> str:
+    """Return an averaging rule in words."""
     names = {
         "max_1s": "largest 1 s average",
         "slow": "slow",
         "fast": "fast",
         "event": "whole event",
     }
-    assessment = result.study.assessment
-    return names[assessment.averaging if assessment else "max_1s"]
+    return names[averaging]
 
 
-def _draw_curve(axes: Axes, criterion: Criterion) -> None:
+def draw_criterion(axes: Axes, criterion: Criterion) -> None:
+    """Draw a velocity criterion [um/s] with its name at its end."""
     limits = criterion.limits / MICROMETRE_PER_SECOND
     axes.plot(criterion.frequencies, limits, color="black", linewidth=0.9)
     axes.annotate(

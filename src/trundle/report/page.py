@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
@@ -19,6 +17,7 @@ from trundle.report import (
     figures_vehicle,
 )
 from trundle.report.canvas import STYLE, Picture, save
+from trundle.report.html import embedded, template
 from trundle.report.interactive import plotly_script
 from trundle.report.map_data import map_payload, map_views
 from trundle.report.tables import (
@@ -64,15 +63,7 @@ def write_report(result: StudyResult, folder: Path, *, tell: Tell | None = None)
             tell(f"figure: {picture.title}", number / len(planned))
         with rc_context(STYLE):
             save(draw(), figures, picture.name)
-        png = (figures / f"{picture.name}.png").read_bytes()
-        pictures.append(
-            {
-                "name": picture.name,
-                "title": picture.title,
-                "caption": picture.caption,
-                "data": base64.b64encode(png).decode("ascii"),
-            }
-        )
+        pictures.append(embedded(picture, figures))
     page = folder / "report.html"
     page.write_text(_render(result, pictures), encoding="utf-8")
     return page
@@ -253,19 +244,10 @@ def _map_figures(result: StudyResult) -> Iterator[Drawing]:
 
 
 def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
-    environment = Environment(
-        loader=PackageLoader("trundle.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["sig"] = lambda value, digits=3: f"{value:.{digits}g}"
-    environment.filters["rank"] = _rank
     study = result.study
     columns, matrix = verdict_matrix(result)
     modes = result.modes
-    return environment.get_template("report.html.j2").render(
+    return template("report.html.j2").render(
         study=study,
         pictures=pictures,
         comparison=comparison_rows(result),
@@ -288,15 +270,6 @@ def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
         gal=GAL,
         micrometre=MICROMETRE_PER_SECOND,
     )
-
-
-def _rank(value: float) -> str:
-    """Name a percentile; below the lowest run it is 'below all', above the highest 'above all'."""
-    if value <= 0.0:
-        return "below all"
-    if value >= 100.0:
-        return "above all"
-    return f"{value:.0f} %"
 
 
 def _class_table() -> list[tuple[str, list[str]]]:

@@ -3,6 +3,7 @@
 from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
 from trundle.response.floor_map import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
+from trundle.response.measured import runs_of_record, without_short_bands
 from trundle.response.peaks import Process, peak_levels
 from trundle.response.reduction import (
     Reduced,
@@ -36,7 +37,9 @@ __all__ = [
     "percentile_rank",
     "reduce_rougher",
     "reduce_runs",
+    "runs_of_record",
     "spectra_of",
     "upper_bounds",
     "velocity_spectra",
+    "without_short_bands",
 ]

@@ -23,6 +23,7 @@ from trundle.signals.levels import (
     running_rms,
 )
 from trundle.signals.psd import amplitude_spectrum, welch_psd
+from trundle.signals.record import Record, RecordQuantity, motion_of, record_warnings
 from trundle.signals.weighting import (
     BASE_ACCELERATION,
     Weighting,
@@ -41,6 +42,8 @@ __all__ = [
     "Averaging",
     "Isolation",
     "Isolator",
+    "Record",
+    "RecordQuantity",
     "TransmissibilityTable",
     "Weighting",
     "amplitude_spectrum",
@@ -57,8 +60,10 @@ __all__ = [
     "filter_zero_phase",
     "level_scatter",
     "mid_band_frequencies",
+    "motion_of",
     "mtvv",
     "nominal_frequency",
+    "record_warnings",
     "response_factor",
     "running_rms",
     "usable_bands",

@@ -12,12 +12,23 @@ from trundle.response import ExactStatistics
 from trundle.study.cells import Cell, CellKey
 from trundle.study.run import StudyResult
 
-__all__ = ["result_groups"]
+__all__ = ["plain", "result_groups"]
 
 Variable: TypeAlias = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 """Dimensions, data and attributes, as xarray takes them."""
 
 _METHOD = "method_name"  # xarray's own selections have an argument called method
+
+
+def plain(value: Any) -> Any:
+    """Turn not-a-number into null, which JSON has."""
+    if isinstance(value, dict):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not np.isfinite(value):
+        return None
+    return value
 
 
 def result_groups(result: StudyResult) -> dict[str, xr.Dataset]:

@@ -22,15 +22,23 @@ from trundle import __version__
 from trundle.errors import InputError
 from trundle.response import percentile_interval
 from trundle.study.cells import Cell
-from trundle.study.datasets import result_groups
+from trundle.study.datasets import plain, result_groups
 from trundle.study.run import StudyResult
 
-__all__ = ["check_target", "new_results_folder", "provenance", "uninterrupted", "write_results"]
+__all__ = [
+    "check_target",
+    "mark_results",
+    "new_results_folder",
+    "provenance",
+    "uninterrupted",
+    "write_results",
+]
 
 _MARK = ".trundle-results"
 _OURS = {
     _MARK,
     "figures",
+    "levels.csv",
     "report.html",
     "results.zarr",
     "study.toml",
@@ -187,8 +195,13 @@ def write_results(result: StudyResult, folder: Path) -> None:
             for method, found in result.warnings().items()
         },
     }
-    text = json.dumps(_plain(summary), indent=1, allow_nan=False)
+    text = json.dumps(plain(summary), indent=1, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+    mark_results(folder)
+
+
+def mark_results(folder: Path) -> None:
+    """Mark a folder as one that trundle wrote, and may replace."""
     (folder / _MARK).write_text("A later run of trundle may replace this folder.\n")
 
 
@@ -261,19 +274,8 @@ def _verdict_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
             }
 
 
-def _plain(value: Any) -> Any:
-    """Turn not-a-number into null, which JSON has."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and not np.isfinite(value):
-        return None
-    return value
-
-
 def _write_zarr(result: StudyResult, path: Path) -> None:
-    attributes = {**_plain(provenance(result)), "study_text": result.study.text}
+    attributes = {**plain(provenance(result)), "study_text": result.study.text}
     attributes["methods"] = json.dumps(attributes["methods"])
     groups = result_groups(result)
     groups["/"] = groups["/"].assign_attrs(attributes)

@@ -1,0 +1,100 @@
+"""Assess measured records from the command line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+
+from trundle._checks import one_of
+from trundle.cli.screen import print_table
+from trundle.criteria import VC, Criterion, find_criterion
+from trundle.errors import InputError
+from trundle.report import record_rows, write_record_report
+from trundle.signals import Averaging
+from trundle.study.assess_record import RecordResult, assess_record, read_simulated
+from trundle.study.read_record import RecordOptions, read_record
+from trundle.study.store import check_target, mark_results, new_results_folder
+from trundle.study.user_criteria import read_criteria
+from trundle.units import to_si
+
+__all__ = ["assess"]
+
+
+def assess(
+    files: list[Path],
+    options: RecordOptions,
+    *,
+    criteria: str,
+    averaging: str,
+    high_pass: str,
+    simulation: Path | None,
+    point: str | None,
+    out: Path | None,
+) -> None:
+    """Assess records one by one; write a results folder for each."""
+    rule: Averaging = one_of("--averaging", averaging, get_args(Averaging))  # pyright: ignore
+    curves = _curves(criteria)
+    limit = to_si(high_pass, "frequency")
+    if out is not None and len(files) > 1:
+        raise InputError("--out names the folder of one record; leave it out for several")
+    places = [out or Path(f"{file.stem}-results") for file in files]
+    if len(set(places)) < len(places):
+        raise InputError("two records would have one results folder; assess them apart with --out")
+    for place in places:
+        check_target(place)
+    simulated = () if simulation is None else read_simulated(simulation, point=point)
+    records = [read_record(file, options) for file in files]
+    for record, place in zip(records, places, strict=True):
+        result = assess_record(record, curves, averaging=rule, high_pass=limit, simulated=simulated)
+        with new_results_folder(place) as folder:
+            write_record_report(result, folder)
+            mark_results(folder)
+        _print(result)
+        print(f"\nreport: {place.resolve() / 'report.html'}")
+
+
+def _curves(text: str) -> tuple[Criterion, ...]:
+    """Return criteria named or in files, between commas; the generic curves for none."""
+    found: list[Criterion] = []
+    for name in filter(None, (part.strip() for part in text.split(","))):
+        path = Path(name)
+        own = path.suffix.lower() in {".csv", ".toml"}
+        found += read_criteria(path) if own else [find_criterion(name)]
+    return tuple(found) or VC
+
+
+def _print(result: RecordResult) -> None:
+    record = result.record
+    print_table(
+        f"{record.source}: {record.duration:.4g} s of {record.quantity} at "
+        f"{record.sampling_frequency:g} Hz",
+        ("channel", "peak [gal]", "RMS v [um/s]", "crest", "R", "VDV [m/s^1.75]"),
+        (
+            (
+                str(row["channel"]),
+                *(
+                    f"{row[name]:.3g}"
+                    for name in ("peak_gal", "rms_um_s", "crest_factor", "response_factor", "vdv")
+                ),
+            )
+            for row in record_rows(result)
+        ),
+    )
+    print_table(
+        f"Verdict, averaging {result.averaging}; margin = limit / level",
+        ("channel", "criterion", "verdict", "margin", "band [Hz]", "at [s]"),
+        (
+            (
+                v.point,
+                v.criterion.title,
+                v.status,
+                *("" if np.isnan(x) else f"{x:.3g}" for x in (v.margin, v.governing_band, v.time)),
+            )
+            for v in result.verdicts
+        ),
+        text_columns=3,
+    )
+    for warning in result.warnings:
+        print(f"warning: {warning}")

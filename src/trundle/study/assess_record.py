@@ -1,0 +1,165 @@
+"""Hold a measured record against criteria, beside a simulation if there is one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from jaxtyping import Float
+
+from trundle._typing import Array
+from trundle.criteria import Criterion, Verdict, assess_reduced, spectra_asked_for
+from trundle.errors import FitnessWarning, InputError
+from trundle.response import Reduced, reduce_runs, runs_of_record, without_short_bands
+from trundle.signals import Averaging, Record
+from trundle.simulate import Runs
+
+__all__ = ["RecordResult", "Simulated", "assess_record", "read_simulated"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Simulated:
+    """Hold simulated band levels to lay a record over.
+
+    Attributes
+    ----------
+    title : str
+        Case, road and point.
+    mid_band : ndarray of float, shape (n_bands,)
+        Mid-band frequencies [Hz].
+    levels : ndarray of float, shape (3, n_bands)
+        5, 50 and 95 % of the runs [m/s].
+    """
+
+    title: str
+    mid_band: Float[Array, " bands"]
+    levels: Float[Array, "3 bands"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RecordResult:
+    """Hold what is said of a record.
+
+    Attributes
+    ----------
+    record : Record
+        The record in SI.
+    runs : Runs
+        Its motion, channels as points.
+    reduced : Reduced
+        Levels and peaks of every channel.
+    criteria : tuple of Criterion
+        What it is held against.
+    verdicts : tuple of Verdict
+        By channel, then by criterion.
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule of band levels.
+    high_pass : float
+        Frequency below which motion is taken for drift [Hz].
+    simulated : tuple of Simulated
+        Simulations laid beside it.
+    """
+
+    record: Record
+    runs: Runs
+    reduced: Reduced
+    criteria: tuple[Criterion, ...]
+    verdicts: tuple[Verdict, ...]
+    averaging: Averaging
+    high_pass: float
+    simulated: tuple[Simulated, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[FitnessWarning, ...]:
+        """Doubts about the record."""
+        return self.runs.warnings
+
+
+def assess_record(
+    record: Record,
+    criteria: Sequence[Criterion],
+    *,
+    averaging: Averaging = "max_1s",
+    high_pass: float = 0.5,
+    events: float = 1.0,
+    simulated: Sequence[Simulated] = (),
+) -> RecordResult:
+    """Hold a record against criteria, as a run of a simulation is.
+
+    Parameters
+    ----------
+    record : Record
+        The record.
+    criteria : sequence of Criterion
+        The curves.
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule of band levels.
+    high_pass : float
+        Frequency below which motion is taken for drift [Hz].
+    events : float
+        How many such events a vibration dose is for.
+    simulated : sequence of Simulated
+        Simulations to lay beside it.
+    """
+    if high_pass > 0.8:
+        raise InputError(
+            f"the high-pass frequency must leave the 1 Hz band whole: 0.8 Hz at most; got "
+            f"{high_pass:g} Hz"
+        )
+    many = tuple(criteria)
+    runs = runs_of_record(record, high_pass=high_pass)
+    reduced = reduce_runs(runs, averaging=averaging, quantities=spectra_asked_for(many))
+    reduced = without_short_bands(reduced, record)
+    top = record.sampling_frequency / 2.5
+    verdicts = assess_reduced(reduced, many, percentile=100.0, top=top, events=events)
+    return RecordResult(
+        record=record,
+        runs=runs,
+        reduced=reduced,
+        criteria=many,
+        verdicts=verdicts,
+        averaging=averaging,
+        high_pass=high_pass,
+        simulated=tuple(simulated),
+    )
+
+
+def read_simulated(folder: Path, *, point: str | None = None) -> tuple[Simulated, ...]:
+    """Read the band levels of a results folder, one for each case and road, by its last method.
+
+    Parameters
+    ----------
+    folder : Path
+        A results folder that trundle wrote.
+    point : str, optional
+        Name of the point; the first unless given.
+
+    Raises
+    ------
+    InputError
+        No such folder, or no such point.
+    """
+    store = folder / "results.zarr"
+    if not store.is_dir():
+        raise InputError(f"{folder}: is no results folder of trundle (no results.zarr in it)")
+    with xr.open_zarr(store) as data:
+        points = [str(name) for name in data["point"].values]
+        if point is not None and point not in points:
+            raise InputError(f"{folder}: no point {point!r}; there are {', '.join(points)}")
+        name = point or points[0]
+        levels = data["band_velocity"].isel(method_name=-1).sel(point=name).load()
+    found = []
+    for case in levels["case"].values:
+        for road in levels["road"].values:
+            values = levels.sel(case=case, road=road).values
+            found.append(
+                Simulated(
+                    title=f"{case}, class {road}, {name}",
+                    mid_band=np.asarray(levels["band"].values, float),
+                    levels=np.percentile(values, [5.0, 50.0, 95.0], axis=0),
+                )
+            )
+    return tuple(found)

@@ -1,0 +1,301 @@
+"""Read measured records from CSV, WAV, UFF 58 and miniSEED files, with their units."""
+
+from __future__ import annotations
+
+import csv
+import re
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.io import wavfile
+
+from trundle._typing import Array
+from trundle.errors import InputError
+from trundle.signals import Record, RecordQuantity
+from trundle.units import motion_scale, to_si
+
+__all__ = ["RecordOptions", "read_record"]
+
+_LARGEST = 2_000_000_000  # bytes
+_UNEVEN = 0.01  # of a time step, that time stamps may stray by
+_MISMATCH = 0.005  # relative, between a stated rate and that of the time stamps
+_HEADING = re.compile(r"^\s*(?P<name>[^\[\(]*?)\s*[\[\(](?P<unit>[^\]\)]+)[\]\)]\s*$")
+_WORDS = re.compile(r"[^\s\[\(]+\s*[\[\(][^\]\)]*[\]\)]|\S+")  # name [unit], or a word
+_TIME = re.compile(r"^\s*(t|time|zeit|temps)\b", re.IGNORECASE)
+_UFF_ORDINATE = {11: "m/s", 12: "m/s2"}  # codes of what the samples are, of dataset 58
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordOptions:
+    """Hold what a file cannot say of itself.
+
+    Attributes
+    ----------
+    unit : str
+        Unit of the samples, as ``mm/s2``, or ``V`` with a sensitivity.
+    rate : str
+        Sampling rate, as ``500 Hz``.
+    sensitivity : str
+        Of the sensor, as ``10 V/(m/s2)`` or ``1000 mV/g``.
+    full_scale : str
+        What the largest number of a WAV file stands for, as ``20 m/s2`` or ``10 V``.
+    """
+
+    unit: str = ""
+    rate: str = ""
+    sensitivity: str = ""
+    full_scale: str = ""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Raw:
+    samples: Array  # (channels, steps)
+    rate: float | None
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+
+
+def read_record(path: Path, options: RecordOptions) -> Record:
+    """Read a record into SI units.
+
+    Parameters
+    ----------
+    path : Path
+        A CSV, TXT, WAV, UFF, UNV or miniSEED file.
+    options : RecordOptions
+        Units, rate and sensitivity, where the file does not say them.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, has gaps or uneven time stamps, or whose unit is not known.
+    """
+    try:
+        if not path.is_file():
+            raise InputError(f"{path}: no such file")
+        if path.stat().st_size > _LARGEST:
+            raise InputError(f"{path}: a record is at most 2 GB; cut it into events")
+        raw = _READERS.get(path.suffix.lower(), _read_csv)(path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
+    samples, quantity = _in_si(raw, options, path)
+    return Record(
+        samples=samples,
+        sampling_frequency=_rate(raw, options, path),
+        quantity=quantity,
+        channel_names=raw.names,
+        source=path.name,
+    )
+
+
+def _rate(raw: _Raw, options: RecordOptions, path: Path) -> float:
+    stated = to_si(options.rate, "frequency") if options.rate else None
+    if raw.rate is None and stated is None:
+        raise InputError(f"{path}: has no time column; say its rate: --rate '500 Hz'")
+    if raw.rate is None or stated is None:
+        return float(raw.rate or stated or 0.0)
+    if abs(stated / raw.rate - 1.0) > _MISMATCH:
+        raise InputError(
+            f"{path}: its own time says {raw.rate:.5g} Hz, and --rate {stated:.5g} Hz; one is wrong"
+        )
+    return float(raw.rate)
+
+
+def _in_si(raw: _Raw, options: RecordOptions, path: Path) -> tuple[Array, RecordQuantity]:
+    scales, quantities = [], set[RecordQuantity]()
+    for name, own in zip(raw.names, raw.units, strict=True):
+        unit = options.full_scale or options.unit or own
+        if not unit:
+            raise InputError(
+                f"{path}: the unit of channel {name!r} is not known; write it in the heading as "
+                "'name [mm/s2]', or say --unit (a WAV file: --full-scale '20 m/s2')"
+            )
+        try:
+            scale, quantity = motion_scale(unit, options.sensitivity)
+        except InputError as error:
+            raise InputError(f"{path}: channel {name!r}: {error}") from None
+        scales.append(scale)
+        quantities.add(quantity)
+    if len(quantities) > 1:
+        raise InputError(f"{path}: channels of acceleration and of velocity; assess them apart")
+    return raw.samples * np.array(scales)[:, None], quantities.pop()
+
+
+def _read_csv(path: Path) -> _Raw:
+    try:
+        text = path.read_text("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(
+            f"{path}: is not text; records are CSV, WAV, UFF 58 or miniSEED files"
+        ) from None
+    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
+    if len(lines) < 2:
+        raise InputError(f"{path}: holds no samples")
+    delimiter = next((mark for mark in (";", "\t", ",") if mark in lines[0]), " ")
+    rows = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
+    first = next(rows) if delimiter != " " else _WORDS.findall(lines[0])
+    heading = not all(map(_is_number, first))
+    decimal = delimiter == ";" and "," in lines[-1]
+    body = lines[1:] if heading else lines
+    table = _numbers(
+        body, delimiter, len(first), path, first_line=2 if heading else 1, comma=decimal
+    )
+    names, units = zip(*(_heading(h, i, heading=heading) for i, h in enumerate(first)), strict=True)
+    has_time = heading and bool(_TIME.match(first[0])) and len(first) > 1
+    if not has_time:
+        return _Raw(samples=table.T.copy(), rate=None, names=names, units=units)
+    scale = to_si(f"1 {units[0]}", "time") if units[0] else 1.0
+    rate = _even_rate(scale * table[:, 0], path)
+    return _Raw(samples=table[:, 1:].T.copy(), rate=rate, names=names[1:], units=units[1:])
+
+
+def _numbers(
+    lines: Sequence[str], delimiter: str, width: int, path: Path, *, first_line: int, comma: bool
+) -> Array:
+    """Return the table; empty cells and words become not-a-number, which a record refuses."""
+    out = np.full((len(lines), width), np.nan)
+    for i, row in enumerate(csv.reader(lines, delimiter=delimiter, skipinitialspace=True)):
+        cells = [cell for cell in row if cell or delimiter != " "]
+        if len(cells) != width:
+            raise InputError(
+                f"{path}: line {first_line + i} has {len(cells)} columns, the first has {width}"
+            )
+        for j, cell in enumerate(cells):
+            number = cell.replace(",", ".") if comma else cell
+            if _is_number(number):
+                out[i, j] = float(number)
+    return out
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.replace(",", "."))
+    except ValueError:
+        return False
+    return True
+
+
+def _heading(text: str, column: int, *, heading: bool) -> tuple[str, str]:
+    if not heading:
+        return f"channel {column + 1}", ""
+    match = _HEADING.match(text)
+    if match is None:
+        return text.strip() or f"channel {column + 1}", ""
+    return match["name"].strip() or f"channel {column + 1}", match["unit"].strip()
+
+
+def _even_rate(time: Array, path: Path) -> float:
+    """Return the sampling rate of time stamps, which must be even."""
+    if not np.isfinite(time).all():
+        at = int(np.argmin(np.isfinite(time)))
+        raise InputError(f"{path}: time stamp {at + 1} is not a number")
+    steps = np.diff(time)
+    step = float(np.median(steps))
+    if step <= 0.0:
+        raise InputError(f"{path}: time does not rise; sort the record")
+    stray = np.flatnonzero(np.abs(steps - step) > max(_UNEVEN, 0.5 * 10.0**-4) * step)
+    wide = stray[np.abs(steps[stray] - step) > 0.5 * step]
+    if len(wide):
+        at = int(wide[0])
+        raise InputError(
+            f"{path}: {len(wide)} gaps in time; the first after {time[at]:.6g} s "
+            f"({steps[at]:.4g} s instead of {step:.4g} s); cut the record there"
+        )
+    mean = (time[-1] - time[0]) / (len(time) - 1)
+    if abs(mean / step - 1.0) > _UNEVEN:
+        raise InputError(f"{path}: time steps vary from {steps.min():.4g} to {steps.max():.4g} s")
+    return 1.0 / float(mean)
+
+
+def _read_wav(path: Path) -> _Raw:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of other programs
+            rate, data = wavfile.read(path)
+    except ValueError as error:
+        raise InputError(f"{path}: is no WAV file ({error})") from None
+    data = np.atleast_2d(np.asarray(data).T)
+    if np.issubdtype(data.dtype, np.integer):
+        offset = 128.0 if data.dtype == np.uint8 else 0.0
+        data = (data - offset) / (
+            128.0 if data.dtype == np.uint8 else -float(np.iinfo(data.dtype).min)
+        )
+    names = tuple(f"channel {i + 1}" for i in range(len(data)))
+    return _Raw(samples=data.astype(float), rate=float(rate), names=names, units=("",) * len(data))
+
+
+def _read_uff(path: Path) -> _Raw:
+    try:
+        import pyuff  # noqa: PLC0415 - an extra
+    except ImportError:
+        raise InputError(f"{path}: UFF files need pyuff: pip install 'trundle[records]'") from None
+    try:
+        sets = pyuff.UFF(str(path)).read_sets()
+    except Exception as error:  # its reader raises whatever its parsing meets
+        raise InputError(f"{path}: is no UFF file ({error})") from None
+    found = [one for one in (sets if isinstance(sets, list) else [sets]) if one.get("type") == 58]
+    found = [one for one in found if one.get("func_type") == 1 and not np.iscomplexobj(one["data"])]
+    if not found:
+        raise InputError(f"{path}: holds no time record (dataset 58, function type 1)")
+    times, rates = [np.asarray(one["x"], float) for one in found], set[float]()
+    rates = {round(_even_rate(time, path), 6) for time in times}
+    if len(rates) > 1 or len({len(time) for time in times}) > 1:
+        raise InputError(f"{path}: its channels differ in rate or length; assess them apart")
+    return _Raw(
+        samples=np.array([one["data"] for one in found], dtype=float),
+        rate=rates.pop(),
+        names=tuple(_uff_name(one, i) for i, one in enumerate(found)),
+        units=tuple(_uff_unit(one) for one in found),
+    )
+
+
+def _uff_name(one: dict[str, object], number: int) -> str:
+    return str(one.get("id1") or "").strip() or f"channel {number + 1}"
+
+
+def _uff_unit(one: dict[str, object]) -> str:
+    label = str(one.get("ordinate_axis_units_lab") or "").strip()
+    if label and label.upper() != "NONE":
+        return label
+    code = one.get("ordinate_spec_data_type")
+    return _UFF_ORDINATE.get(code, "") if isinstance(code, int) else ""
+
+
+def _read_miniseed(path: Path) -> _Raw:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # its imports use what Python is about to drop
+            import obspy  # noqa: PLC0415 - an extra
+    except ImportError:
+        raise InputError(f"{path}: miniSEED needs obspy: pip install 'trundle[seismic]'") from None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            stream = obspy.read(str(path))
+            stream.merge()
+    except Exception as error:  # its readers raise whatever their parsing meets
+        raise InputError(f"{path}: is no miniSEED file ({error})") from None
+    gaps = [trace.id for trace in stream if np.ma.isMaskedArray(trace.data)]
+    if gaps:
+        raise InputError(f"{path}: gaps in {', '.join(gaps)}; cut the record there")
+    if len({(trace.stats.sampling_rate, len(trace.data)) for trace in stream}) > 1:
+        raise InputError(f"{path}: its channels differ in rate or length; assess them apart")
+    return _Raw(
+        samples=np.array([trace.data for trace in stream], dtype=float),
+        rate=float(stream[0].stats.sampling_rate),
+        names=tuple(trace.id for trace in stream),
+        units=("",) * len(stream),
+    )
+
+
+_READERS = {
+    ".wav": _read_wav,
+    ".uff": _read_uff,
+    ".unv": _read_uff,
+    ".mseed": _read_miniseed,
+    ".miniseed": _read_miniseed,
+    ".msd": _read_miniseed,
+}

@@ -1,0 +1,255 @@
+"""Measured records: made files with known levels, files that are refused or warned of by name."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+from scipy.io import wavfile
+
+from trundle.cli.app import main
+from trundle.criteria import VC, find_criterion
+from trundle.errors import InputError
+from trundle.signals import Record, band_edges, mid_band_frequencies, motion_of
+from trundle.study.assess_record import assess_record
+from trundle.study.read_record import RecordOptions, read_record
+
+FS, T = 400.0, 60.0
+TONES = {4: 60e-6, 6: 100e-6, 10: 40e-6, 13: 12e-6}  # band number: RMS velocity [m/s]
+NO_OPTIONS = RecordOptions()
+
+
+def tones(quantity="acceleration", fs=FS, duration=T):
+    """Steady tones at mid-band, faded in and out over 8 s: their RMS is known in every 1 s."""
+    t = np.arange(round(duration * fs)) / fs
+    ease = np.clip(np.minimum(t, duration - t) / 8.0, 0, 1)
+    v = np.zeros_like(t)
+    for k, rms in TONES.items():
+        f = 10.0 ** (k / 10.0)
+        size = np.sqrt(2) * rms * (2 * np.pi * f if quantity == "acceleration" else 1.0)
+        v += size * np.sin(2 * np.pi * f * t + k)
+    return t, ease**2 * (3 - 2 * ease) * v
+
+
+def write_csv(path, t, samples, heading="time [s],z [mm/s2]", scale=1e3):
+    rows = "\n".join(f"{a:.6f},{scale * b:.9g}" for a, b in zip(t, samples, strict=True))
+    path.write_text(f"{heading}\n{rows}\n")
+    return path
+
+
+@pytest.mark.parametrize("quantity", ["acceleration", "velocity"])
+def test_known_levels_come_back_within_0_2_db(tmp_path, quantity):
+    """Tones at mid-band of known RMS, plus an offset and a drift that would ruin an integral."""
+    t, samples = tones(quantity)
+    heading = "time [s],z [mm/s2]" if quantity == "acceleration" else "time [s],z [mm/s]"
+    drifting = samples + 0.05 + 0.001 * t
+    record = read_record(write_csv(tmp_path / "r.csv", t, drifting, heading), NO_OPTIONS)
+    assert record.quantity == quantity
+    assert record.sampling_frequency == pytest.approx(FS, rel=1e-6)
+    spectra = assess_record(record, VC).reduced.spectra
+    for k, rms in TONES.items():
+        assert 20 * np.log10(spectra.values[0, 0, k] / rms) == pytest.approx(0.0, abs=0.2)
+
+
+def test_a_noise_record_has_the_levels_of_its_spectrum(tmp_path):
+    """White acceleration of PSD S: band RMS velocity^2 = S / (2 pi)^2 (1/f1 - 1/f2), event average."""
+    rng = np.random.default_rng(8)
+    psd, fs = 1e-8, 400.0
+    a = rng.standard_normal(round(1200 * fs)) * np.sqrt(psd * fs / 2)
+    record = Record(
+        samples=a[None], sampling_frequency=fs, quantity="acceleration", channel_names=("z",)
+    )
+    spectra = assess_record(record, VC, averaging="event").reduced.spectra
+    mid = mid_band_frequencies()
+    low, high = band_edges(mid).T
+    expected = np.sqrt(psd / (2 * np.pi) ** 2 * (1 / low - 1 / high))
+    found = spectra.values[0, 0]
+    decibels = 20 * np.log10(found / expected)[mid > 1.5]  # 1.013: Butterworth's noise bandwidth
+    assert np.abs(decibels).max() < 0.45
+    assert np.median(decibels) == pytest.approx(20 * np.log10(np.sqrt(1.013)), abs=0.1)
+
+
+def test_integration_does_not_drift():
+    """A burst in acceleration that is the derivative of a known velocity: that velocity comes back."""
+    fs, t = 200.0, np.arange(0, 40, 1 / 200.0)
+    v = 1e-4 * np.exp(-(((t - 20) / 1.5) ** 2)) * np.sin(2 * np.pi * 5 * t)
+    a = np.gradient(v, t, edge_order=2)
+    record = Record(
+        samples=(a + 0.3)[None],
+        sampling_frequency=fs,
+        quantity="acceleration",
+        channel_names=("z",),
+    )
+    _, velocity, acceleration = motion_of(record)
+    assert np.abs(velocity[0] - v).max() < 0.01 * v.max()
+    assert np.abs(acceleration[0] - a).max() < 0.01 * a.max()
+    assert np.abs(velocity[0][:1000]).max() < 1e-3 * v.max()
+
+
+def test_every_format_holds_the_same_record(tmp_path):
+    t, a = tones()
+    expected = read_record(write_csv(tmp_path / "r.csv", t, a), NO_OPTIONS).samples[0]
+    bare = tmp_path / "bare.txt"
+    bare.write_text("\n".join(f"{x:.9g}" for x in a))
+    semicolons = tmp_path / "comma.csv"
+    semicolons.write_text(
+        "Time [ms];z [m/s2]\n"
+        + "\n".join(f"{1e3 * x:.3f};{y:.9g}".replace(".", ",") for x, y in zip(t, a, strict=True))
+    )
+    wavfile.write(tmp_path / "f.wav", int(FS), a.astype(np.float32))
+    scaled = np.round(a / 0.1 * 2**31).astype(np.int32)
+    wavfile.write(tmp_path / "i.wav", int(FS), scaled)
+    for path, options in (
+        (bare, RecordOptions(unit="m/s2", rate="400 Hz")),
+        (semicolons, NO_OPTIONS),
+        (tmp_path / "f.wav", RecordOptions(unit="m/s2")),
+        (tmp_path / "i.wav", RecordOptions(full_scale="0.1 m/s2")),
+        (tmp_path / "i.wav", RecordOptions(full_scale="1 V", sensitivity="10 V/(m/s2)")),
+    ):
+        record = read_record(path, options)
+        assert record.sampling_frequency == pytest.approx(FS, rel=1e-6)
+        np.testing.assert_allclose(record.samples[0], expected, atol=2e-7 * np.abs(a).max() + 1e-11)
+
+
+def test_uff_58(tmp_path):
+    pyuff = pytest.importorskip("pyuff")
+    t, a = tones(duration=20.0)
+    data = pyuff.prepare_58(
+        func_type=1, rsp_node=1, rsp_dir=3, ref_dir=3, ref_node=1, data=a, x=t, id1="slab z",
+        ordinate_spec_data_type=12, abscissa_spacing=1, abscissa_min=0.0, abscissa_inc=1 / FS,
+        binary=0, ordinate_axis_units_lab="m/s2", orddenom_spec_data_type=0, z_axis_spec_data_type=0,
+        abscissa_spec_data_type=17, id2="", id3="", id4="", id5="", ver_num=0, load_case_id=0,
+        rsp_ent_name="NONE", ref_ent_name="NONE", abscissa_axis_units_lab="s", orddenom_axis_units_lab="NONE",
+        z_axis_axis_units_lab="NONE", ord_data_type=4, z_axis_value=0.0,
+    )  # fmt: skip
+    pyuff.UFF(str(tmp_path / "r.uff")).write_sets(data, "add")
+    record = read_record(tmp_path / "r.uff", NO_OPTIONS)
+    assert record.channel_names == ("slab z",)
+    assert record.sampling_frequency == pytest.approx(FS, rel=1e-5)
+    np.testing.assert_allclose(record.samples[0], a, atol=1e-5 * np.abs(a).max())
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_miniseed(tmp_path):
+    obspy = pytest.importorskip("obspy")
+    _, a = tones(duration=20.0)
+    header = {"network": "XX", "station": "FLOOR", "channel": "HHZ", "sampling_rate": FS}
+    trace = obspy.Trace(data=a / 1e-6, header=header)
+    trace.write(str(tmp_path / "r.mseed"), format="MSEED")
+    record = read_record(tmp_path / "r.mseed", RecordOptions(unit="um/s2"))
+    assert record.channel_names == ("XX.FLOOR..HHZ",)
+    np.testing.assert_allclose(record.samples[0], a, rtol=1e-12)
+    hole = obspy.Trace(data=a[:1000], header=header | {"starttime": trace.stats.endtime + 5})
+    obspy.Stream([trace, hole]).write(str(tmp_path / "gap.mseed"), format="MSEED")
+    with pytest.raises(InputError, match=r"gaps in XX.FLOOR..HHZ"):
+        read_record(tmp_path / "gap.mseed", RecordOptions(unit="m/s2"))
+
+
+def broken(t, a, how):
+    t, a = t.copy(), a.copy()
+    if how == "nan":
+        a[5000] = np.nan
+    if how == "gap":
+        t[9000:] += 0.5
+    if how == "dead":
+        a[:] = 1.0
+    if how == "short":
+        t, a = t[:400], a[:400]
+    return t, a
+
+
+@pytest.mark.parametrize(
+    ("how", "told"),
+    [("nan", r"not numbers; the first is in channel 'z' at 12.5 s"), ("gap", "1 gaps in time"),
+     ("dead", "channel 'z' never moves"), ("short", "too short")],
+)  # fmt: skip
+def test_records_that_cannot_be_right_are_refused(tmp_path, how, told):
+    path = write_csv(tmp_path / "r.csv", *broken(*tones(), how))
+    with pytest.raises(InputError, match=told):
+        read_record(path, NO_OPTIONS)
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "told"),
+    [
+        ("time [s],z\n0,1\n0.01,2\n", NO_OPTIONS, "unit of channel 'z' is not known"),
+        ("z [mm/s2]\n1\n2\n", NO_OPTIONS, "say its rate"),
+        ("time [s],z [kg]\n0,1\n0.01,2\n", NO_OPTIONS, "neither acceleration nor velocity"),
+        ("time [s],z [V]\n0,1\n0.01,2\n", NO_OPTIONS, "neither acceleration nor velocity"),
+        ("time [s],z [mm/s2],y [mm/s]\n0,1,1\n0.01,2,2\n", NO_OPTIONS, "assess them apart"),
+        ("time [s],z [mm/s2]\n0,1\n0.01,2\n", RecordOptions(rate="500 Hz"), "one is wrong"),
+        ("time [s],z [mm/s2]\n0,1\n0.01,2,3\n", NO_OPTIONS, "line 3 has 3 columns"),
+        ("", NO_OPTIONS, "holds no samples"),
+    ],
+)
+def test_files_that_say_too_little_are_refused(tmp_path, text, options, told):
+    path = tmp_path / "r.csv"
+    path.write_text(text)
+    with pytest.raises(InputError, match=told):
+        read_record(path, options)
+
+
+def subjects(samples, fs=FS):
+    record = Record(
+        samples=samples[None], sampling_frequency=fs, quantity="velocity", channel_names=("z",)
+    )
+    return {warning.subject for warning in assess_record(record, VC).warnings}
+
+
+def test_records_in_doubt_are_warned_of_by_name():
+    _, v = tones("velocity")
+    assert subjects(v) == {"scatter"}
+    assert "clipped, z" in subjects(np.clip(v, -0.5 * v.max(), 0.5 * v.max()))
+    assert "sampling rate" in subjects(v[::4], fs=FS / 4)
+    assert "record length" in subjects(tones("velocity", duration=5.0)[1])
+    t = np.arange(0, 20, 1 / FS)
+    pulse = np.exp(-(((t - 19.5) / 0.5) ** 2)) * np.sin(2 * np.pi * 5 * t)
+    assert "record ends, z" in subjects(pulse)
+    assert "record starts, z" in subjects(pulse[::-1])
+
+
+def test_what_a_record_cannot_show_is_not_assessed():
+    """5.1 s hold 8 periods of 1.57 Hz, and 100 Hz shows 40 Hz: VC-C asks for 1 to 80 Hz."""
+    short = tones("velocity", duration=5.1)[1] * 1e-3
+    record = Record(
+        samples=short[None], sampling_frequency=FS, quantity="velocity", channel_names=("z",)
+    )
+    verdict = assess_record(record, [find_criterion("VC-C")]).verdicts[0]
+    assert verdict.status == "not assessed"
+    assert verdict.unresolved == (1.0, 1.25)
+    slow = tones("velocity")[1][::4] * 1e-3
+    record = Record(
+        samples=slow[None], sampling_frequency=FS / 4, quantity="velocity", channel_names=("z",)
+    )
+    verdict = assess_record(record, [find_criterion("VC-C")]).verdicts[0]
+    assert verdict.unresolved == (50.0, 63.0, 80.0)
+
+
+def run(monkeypatch, *arguments):
+    monkeypatch.setattr(sys, "argv", ["trundle", *map(str, arguments)])
+    try:
+        main()
+    except SystemExit as stop:
+        return stop.code or 0
+    return 0
+
+
+def test_the_command_writes_a_report(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    t, a = tones()
+    write_csv(tmp_path / "event <b>.csv", t, a)
+    assert run(monkeypatch, "assess", "event <b>.csv", "-c", "VC-A,VC-D,R-office") == 0
+    printed = capsys.readouterr().out
+    assert "VC-D" in printed
+    folder = tmp_path / "event <b>-results"
+    summary = json.loads((folder / "summary.json").read_text())
+    found = {v["criterion"]: v["verdict"] for v in summary["verdicts"]}
+    assert found == {"VC-A": "fail", "VC-D": "fail", "R-office": "pass"}  # 100 um/s at 4 Hz
+    page = (folder / "report.html").read_text()
+    assert "event &lt;b&gt;.csv" in page
+    assert "<b>.csv" not in page
+    levels = (folder / "levels.csv").read_text().splitlines()
+    assert levels[0] == "band_hz,z [um/s]"
+    assert float(levels[7].split(",")[1]) == pytest.approx(100.0, rel=0.02)
+    assert run(monkeypatch, "assess", "event <b>.csv", "--averaging", "max_2s") == 2
+    assert "max_1s" in capsys.readouterr().err

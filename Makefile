@@ -35,6 +35,7 @@ check: .venv/.ready-dev
 	$(BIN)/python -m numpydoc lint $$(git ls-files "src/*.py")
 
 test: check
+	sh scripts/setup_browser.sh
 	$(BIN)/python -m pytest -n 2
 
 fast: .venv/.ready-dev

@@ -19,7 +19,7 @@ from test_bad_input import GOOD
 from trundle.report import bound_rows, comparison_rows, write_report
 from trundle.study import load_study
 from trundle.study.cells import CellKey
-from trundle.study.run import run_study
+from trundle.study.run import positions_at, run_study
 from trundle.study.store import check_target, new_results_folder, uninterrupted, write_results
 
 EXTRA = """
@@ -227,3 +227,16 @@ def test_the_papers_study_is_sound():
     assert study.runs >= 50
     assert len(study.printed) == 16
     assert len(study.printed_bounds) == 10
+
+
+def test_the_vehicle_stands_where_its_speed_has_brought_it(tmp_path):
+    """15 km/h from the entry: at the time of the largest level, metres along the route."""
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD)
+    result = run_study(load_study(path))
+    ((key, (verdict,)),) = result.verdicts.items()
+    place = positions_at(result, key, 1.8)["main"]
+    assert place == pytest.approx([15 / 3.6 * 1.8, 3.0])
+    assert positions_at(result, key, 100.0) == {"main": None}
+    assert positions_at(result, key, float("nan")) == {}
+    assert 0.0 < verdict.time < 4.0

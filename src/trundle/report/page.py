@@ -6,9 +6,11 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from trundle.criteria import Verdict
 from trundle.report import (
     figures_floor,
     figures_map,
@@ -30,7 +32,8 @@ from trundle.report.tables import (
 )
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import self_weight_deflection
-from trundle.study.run import StudyResult
+from trundle.study.cells import CellKey
+from trundle.study.run import StudyResult, positions_at
 from trundle.study.store import provenance
 from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 
@@ -291,6 +294,25 @@ def _headline(result: StudyResult) -> list[dict[str, Any]]:
             failed = [v for v in bands if v.status == "fail"]
             first = max(failed, key=lambda v: float(v.criterion.limits.min()), default=None)
             lines.append(
-                {"case": key.case, "road": key.road, "point": point, "best": best, "first": first}
+                {
+                    "case": key.case,
+                    "road": key.road,
+                    "point": point,
+                    "best": best,
+                    "first": first,
+                    "where": _where(result, key, first or best),
+                }
             )
     return lines
+
+
+def _where(result: StudyResult, key: CellKey, verdict: Verdict | None) -> str:
+    """Say when the governing level occurred, and where the vehicles were."""
+    if verdict is None or not np.isfinite(verdict.time):
+        return ""
+    places = positions_at(result, key, verdict.time)
+    there = [
+        f"{name} has left" if place is None else f"{name} at ({place[0]:.1f}, {place[1]:.1f}) m"
+        for name, place in places.items()
+    ]
+    return f"{verdict.time:.1f} s, {', '.join(there)}"

@@ -82,6 +82,14 @@ class Crossing:
         way = self.route.length - self.lead + self.vehicle.length
         return self.depart + self.route.law.time_to(way)
 
+    def front_axle(self, time: float) -> tuple[float, float] | None:
+        """Return where the front axle stands at a time [m], or None when it is off the route."""
+        station = self.lead + float(self.route.law.distance(time - self.depart))
+        if not 0.0 <= station <= self.route.length:
+            return None
+        place, _ = self.route.locate(np.array([station]))
+        return float(place[0, 0]), float(place[0, 1])
+
 
 @dataclass(frozen=True, kw_only=True)
 class Decoupled:

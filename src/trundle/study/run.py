@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes
 from trundle.errors import FitnessWarning
@@ -21,7 +23,7 @@ from trundle.study.progress import Bar, Report
 from trundle.study.scale_out import Cluster
 from trundle.study.unfinished import InMemory, PieceStore
 
-__all__ = ["StudyResult", "run_study"]
+__all__ = ["StudyResult", "positions_at", "run_study"]
 
 _MODES_SHARE = 0.45  # of a study's time, as a first guess for the bar
 
@@ -212,3 +214,27 @@ def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:
         top=cell.top,
         events=study.assessment.events,
     )
+
+
+def positions_at(result: StudyResult, key: CellKey, time: float) -> dict[str, list[float] | None]:
+    """Return where each vehicle's front axle stands at a time [m]; None off its route.
+
+    Parameters
+    ----------
+    result : StudyResult
+        A finished study.
+    key : CellKey
+        Which cell.
+    time : float
+        Time of the record [s]; NaN gives nothing.
+    """
+    study = result.study
+    if np.isnan(time):
+        return {}
+    case = next(case for case in study.cases if case.name == key.case)
+    method = next(method for method in study.methods if method.name == key.method)
+    places = {
+        crossing.route.name: crossing.front_axle(time)
+        for crossing in study.crossings(case, key.road, method)
+    }
+    return {name: None if place is None else list(place) for name, place in places.items()}

@@ -23,7 +23,7 @@ from trundle.errors import InputError
 from trundle.response import percentile_interval
 from trundle.study.cells import Cell
 from trundle.study.datasets import plain, result_groups
-from trundle.study.run import StudyResult
+from trundle.study.run import StudyResult, positions_at
 
 __all__ = [
     "check_target",
@@ -270,6 +270,8 @@ def _verdict_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
                 "value_si": verdict.value,
                 "limit_si": verdict.limit,
                 "share_exceeding": verdict.share_exceeding,
+                "time_s": verdict.time,
+                "front_axles_m": positions_at(result, key, verdict.time),
                 "unresolved_bands_hz": list(verdict.unresolved),
             }
 

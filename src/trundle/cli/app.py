@@ -148,6 +148,48 @@ def assess(
 
 
 @app.command()
+def mitigate(
+    study: StudyPath,
+    *,
+    speeds: Annotated[
+        str, typer.Option("--speeds", help="Speeds of every vehicle, between commas.")
+    ] = "5 km/h, 10 km/h, 15 km/h, 20 km/h, 30 km/h, 40 km/h",
+    roads: Annotated[str, typer.Option("--roads", help="Road classes.")] = "A,B,C,D",
+    vehicle: Annotated[
+        str, typer.Option("--vehicle", help="Other vehicles; 'trundle vehicles' lists them.")
+    ] = "",
+    slab: Annotated[str, typer.Option("--slab", help="Other slabs: '0.25 m, 300 mm'.")] = "",
+    damping: Annotated[str, typer.Option("--damping", help="Other damping: '2 %, 5 %'.")] = "",
+    isolator: Annotated[
+        str, typer.Option("--isolator", help="Under every point: '2 Hz / 10 %, 1 Hz / 5 %'.")
+    ] = "",
+    runs: Annotated[int, typer.Option("--runs", min=1, max=10_000, help="Runs of each.")] = 60,
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", "-o", help="Results folder. [default: STUDY-mitigation-results]"),
+    ] = None,
+) -> None:
+    """Try what would help: speed, road class, vehicle, slab, damping, isolator.
+
+    Every speed is combined with every road class, for the study as it is and for each change by
+    itself: a matrix of the criteria met, curves of level against speed, and summary.csv.
+    """
+    from trundle.cli import mitigate_command
+
+    mitigate_command.mitigate(
+        study,
+        speeds=speeds,
+        roads=roads,
+        vehicles=vehicle,
+        slabs=slab,
+        dampings=damping,
+        isolators=isolator,
+        runs=runs,
+        out=out or Path(f"{study.stem}-mitigation-results"),
+    )
+
+
+@app.command()
 def check(study: StudyPath) -> None:
     """Check a study: every mistake at once with its remedy, or a summary and a plan sketch."""
     from trundle.cli import commands

@@ -1,5 +1,6 @@
 """Draw figures and write the report of a study."""
 
+from trundle.report.mitigation_page import mitigation_rows, write_mitigation_report
 from trundle.report.page import write_report
 from trundle.report.record_page import record_rows, write_record_report
 from trundle.report.tables import (
@@ -14,9 +15,11 @@ __all__ = [
     "bound_rows",
     "comparison_rows",
     "exact_rows",
+    "mitigation_rows",
     "record_rows",
     "summary_rows",
     "verdict_matrix",
+    "write_mitigation_report",
     "write_record_report",
     "write_report",
 ]

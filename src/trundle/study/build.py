@@ -116,6 +116,7 @@ class _Builder:
             duration=general.duration,
             floor=floor,
             plan=plan,
+            mesh_size=mesh_size,
             drives=drives,
             cases=singles + traffic,
             roads={road_label(r): _road(r) for r in file.items("road")},

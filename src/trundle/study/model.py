@@ -152,6 +152,8 @@ class Study:
         The meshed floor.
     plan : FloorPlan
         The plan that it was meshed from.
+    mesh_size : float
+        Largest edge of an element [m].
     drives : mapping of str to Drive
         Routes by name.
     cases : tuple of Case
@@ -185,6 +187,7 @@ class Study:
     duration: float
     floor: Floor
     plan: FloorPlan
+    mesh_size: float
     drives: Mapping[str, Drive]
     cases: tuple[Case, ...]
     roads: Mapping[str, RoadClass]

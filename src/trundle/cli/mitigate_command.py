@@ -1,0 +1,120 @@
+"""Try what would help, from the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from trundle._checks import one_of
+from trundle.cli.screen import print_table, progress_bar
+from trundle.errors import InputError
+from trundle.report import mitigation_rows, write_mitigation_report
+from trundle.road import CLASS_NAMES
+from trundle.signals import Isolator
+from trundle.study.build import load_study
+from trundle.study.mitigation import Change, Sweep, try_changes
+from trundle.study.store import check_target, mark_results, new_results_folder
+from trundle.units import KMH, to_si
+from trundle.vehicle import VEHICLES
+
+__all__ = ["mitigate"]
+
+T = TypeVar("T")
+
+
+def mitigate(
+    path: Path,
+    *,
+    speeds: str,
+    roads: str,
+    vehicles: str,
+    slabs: str,
+    dampings: str,
+    isolators: str,
+    runs: int,
+    out: Path,
+) -> None:
+    """Run every combination, print matrices and write a results folder."""
+    study = load_study(path)
+    check_target(out)
+    at = sorted(_each("--speeds", speeds, lambda text: to_si(text, "speed")))
+    if not at or at[0] <= 0.0:
+        raise InputError(f"--speeds {speeds!r}: give speeds above 0, such as '5 km/h, 15 km/h'")
+    classes = _each("--roads", roads, lambda text: one_of("--roads", text, CLASS_NAMES))
+    changes = _changes(vehicles, slabs, dampings, isolators)
+    with progress_bar() as tell, new_results_folder(out) as folder:
+        sweep = try_changes(
+            study, changes=changes, speeds=at, roads=classes, runs=runs, report=tell
+        )
+        write_mitigation_report(sweep, folder)
+        mark_results(folder)
+    _print(sweep)
+    print(f"\nreport: {out.resolve() / 'report.html'}")
+
+
+def _changes(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[Change]:
+    """Return the study as it is, and each change to it by itself."""
+    found = [Change()]
+    names = _each("--vehicle", vehicles, lambda text: one_of("--vehicle", text, VEHICLES))
+    found += [Change(label=name.replace("_", " "), vehicle=VEHICLES[name]()) for name in names]
+    for slab in _each("--slab", slabs, lambda text: to_si(text, "length")):
+        if not 0.02 <= slab <= 3.0:
+            raise InputError(f"--slab: a slab is 20 mm to 3 m thick; got {slab:g} m")
+        found.append(Change(label=f"slab {1e3 * slab:g} mm", slab_thickness=slab))
+    for ratio in _each("--damping", dampings, lambda text: to_si(text, "ratio")):
+        if not 0.0 < ratio < 1.0:
+            raise InputError(f"--damping: a ratio is above 0 and below 1; got {ratio:g}")
+        found.append(Change(label=f"damping {100 * ratio:g} %", damping_ratio=ratio))
+    found += [
+        Change(label=str(isolator), isolation=isolator)
+        for isolator in _each("--isolator", isolators, _isolator)
+    ]
+    return found
+
+
+def _isolator(text: str) -> Isolator:
+    frequency, slash, damping = text.partition("/")
+    if not slash:
+        raise InputError("write frequency / damping, such as '2 Hz / 10 %'")
+    return Isolator(
+        frequency=to_si(frequency.strip(), "frequency"),
+        damping_ratio=to_si(damping.strip(), "ratio"),
+    )
+
+
+def _each(option: str, text: str, read: Callable[[str], T]) -> list[T]:
+    """Read what stands between commas."""
+    found: list[T] = []
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        try:
+            found.append(read(part))
+        except InputError as error:
+            raise InputError(f"{option} {part!r}: {error}") from None
+    return found
+
+
+def _print(sweep: Sweep) -> None:
+    rows = mitigation_rows(sweep)
+    found = {
+        (r["change"], r["case"], r["point"], round(r["speed_kmh"], 6), r["road"]): r["strictest"]
+        for r in rows
+    }
+    for change in sweep.changes:
+        for point in sweep.study.points:
+            print_table(
+                f"Strictest criterion met at {point}: {change}",
+                ("vehicle on", "speed [km/h]", *(f"class {road}" for road in sweep.roads)),
+                (
+                    (
+                        case.name,
+                        f"{speed / KMH:.3g}",
+                        *(
+                            found[change, case.name, point, round(speed / KMH, 6), road]
+                            for road in sweep.roads
+                        ),
+                    )
+                    for case in sweep.study.cases
+                    for speed in sweep.speeds
+                ),
+            )

@@ -1,0 +1,100 @@
+"""Write what would help: a page with matrices and curves, and every margin as CSV."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+from matplotlib import rc_context
+
+from trundle import __version__
+from trundle.report.canvas import STYLE, Picture, save
+from trundle.report.figures_mitigation import class_matrix_figure, speed_figure, strictest
+from trundle.report.html import embedded, template
+from trundle.study.mitigation import Sweep
+from trundle.units import KMH
+
+__all__ = ["mitigation_rows", "write_mitigation_report"]
+
+
+def mitigation_rows(sweep: Sweep) -> list[dict[str, Any]]:
+    """Return one row a combination and point: the strictest criterion met."""
+    return [
+        {
+            "change": one.change,
+            "case": one.case,
+            "speed_kmh": one.speed / KMH,
+            "road": one.road,
+            "point": point,
+            "strictest": strictest(one.verdicts, point),
+        }
+        for one in sweep.outcomes
+        for point in sweep.study.points
+    ]
+
+
+def write_mitigation_report(sweep: Sweep, folder: Path) -> Path:
+    """Write ``report.html``, ``summary.csv`` and figures; return the page."""
+    figures = folder / "figures"
+    figures.mkdir()
+    pictures = []
+    curve = _middle_curve(sweep)
+    for i, point in enumerate(sweep.study.points):
+        drawings = [
+            (
+                Picture(
+                    name=f"matrix_{i + 1}",
+                    title=f"Strictest criterion met, {point}",
+                    caption="By speed and road class, for every change and case.",
+                ),
+                lambda point=point: class_matrix_figure(sweep, point),
+            )
+        ]
+        if curve:
+            drawings.append(
+                (
+                    Picture(
+                        name=f"speed_{i + 1}",
+                        title=f"Level against speed, {point}",
+                        caption=f"Level over the limit of {curve}, where it is nearest; above 1 it "
+                        "fails. Dotted: speeds at which axles pass at the floor's first frequency, "
+                        "a half or a third of it.",
+                    ),
+                    lambda point=point: speed_figure(sweep, point, curve),
+                )
+            )
+        for picture, draw in drawings:
+            with rc_context(STYLE):
+                save(draw(), figures, picture.name)
+            pictures.append(embedded(picture, figures))
+    with (folder / "summary.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        heads = ("change", "case", "speed_kmh", "road", "point", "criterion", "verdict", "margin")
+        writer.writerow([*heads, "governing_band_hz", "share_exceeding"])
+        for one in sweep.outcomes:
+            for v in one.verdicts:
+                key = [one.change, one.case, f"{one.speed / KMH:g}", one.road, v.point]
+                values = [f"{x:.6g}" for x in (v.margin, v.governing_band, v.share_exceeding)]
+                writer.writerow([*key, v.criterion.name, v.status, *values])
+    page = folder / "report.html"
+    page.write_text(
+        template("mitigation.html.j2").render(
+            sweep=sweep, rows=mitigation_rows(sweep), pictures=pictures, version=__version__
+        ),
+        encoding="utf-8",
+    )
+    return page
+
+
+def _middle_curve(sweep: Sweep) -> str:
+    """Return the velocity criterion whose margins lie nearest to 1, to draw curves for."""
+    by_curve: dict[str, list[float]] = {}
+    for one in sweep.outcomes:
+        for v in one.verdicts:
+            if v.criterion.quantity == "band_rms_velocity" and v.margin == v.margin:
+                by_curve.setdefault(v.criterion.name, []).append(v.margin)
+    if not by_curve:
+        return ""
+    shares = {name: sum(m >= 1.0 for m in ms) / len(ms) for name, ms in by_curve.items()}
+    return min(shares, key=lambda name: abs(shares[name] - 0.5))

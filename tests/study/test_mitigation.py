@@ -1,0 +1,120 @@
+"""What would help: every combination is what a study of it would say."""
+
+import csv
+import sys
+
+import numpy as np
+import pytest
+from test_bad_input import GOOD
+
+from trundle.cli.app import main
+from trundle.signals import Isolator
+from trundle.study import load_study
+from trundle.study.mitigation import Change, resonance_speeds, try_changes
+from trundle.study.run import run_study
+from trundle.units import KMH
+from trundle.vehicle import container_truck_40ft
+
+TEXT = GOOD.replace('duration = "4 s"', 'duration = "14 s"')
+
+
+def study_of(folder, text=TEXT):
+    path = folder / "study.toml"
+    path.write_text(text)
+    return load_study(path)
+
+
+def verdict_of(study):
+    ((verdict,),) = run_study(study).verdicts.values()
+    return verdict
+
+
+def outcome(sweep, change, speed, road):
+    (found,) = (
+        o for o in sweep.outcomes if (o.change, o.road) == (change, road) and o.speed == speed
+    )
+    (verdict,) = found.verdicts
+    return verdict
+
+
+def test_a_combination_is_what_its_own_study_says(tmp_path):
+    """Class C at 12 km/h, a thicker slab, more damping, an isolator: against four studies."""
+    changes = [
+        Change(),
+        Change(label="slab", slab_thickness=0.3),
+        Change(label="damping", damping_ratio=0.06),
+        Change(label="isolator", isolation=Isolator(frequency=2.0, damping_ratio=0.1)),
+    ]
+    speeds = (12 * KMH, 15 * KMH)
+    study = study_of(tmp_path)
+    sweep = try_changes(study, changes=changes, speeds=speeds, roads=("B", "C"), runs=study.runs)
+    assert len(sweep.outcomes) == 4 * 2 * 2
+    slow = TEXT.replace('"15 km/h"', '"12 km/h"').replace('class = "B"', 'class = "C"')
+    for text, found in (
+        (slow, outcome(sweep, "as in the study", speeds[0], "C")),
+        (TEXT, outcome(sweep, "as in the study", speeds[1], "B")),
+        (TEXT.replace('slab_thickness = "0.2 m"', 'slab_thickness = "0.3 m"'), outcome(sweep, "slab", speeds[1], "B")),
+        (TEXT.replace('"3 %"', '"6 %"'), outcome(sweep, "damping", speeds[1], "B")),
+        (
+            TEXT.replace("[[point]]", '[[point]]\nisolator = { frequency = "2 Hz", damping = "10 %" }'),
+            outcome(sweep, "isolator", speeds[1], "B"),
+        ),
+    ):  # fmt: skip
+        own = verdict_of(study_of(tmp_path, text))
+        assert found.margin == pytest.approx(own.margin, rel=1e-5)
+        assert found.status == own.status
+    margins = sweep.margin("as in the study", "main", "C", "tool", "VC-A")
+    assert margins[0] == pytest.approx(outcome(sweep, "as in the study", speeds[0], "C").margin)
+
+
+def test_resonance_speeds_are_those_of_axles_in_step():
+    """f1 = 4 Hz: axles d apart pass every 1/4 s at V = 4 d, every second beat at half of it."""
+    truck = container_truck_40ft()
+    distances = np.diff(truck.setback)
+    expected = sorted({4.0 * d / k for d in distances for k in (1, 2, 3)})
+    found = resonance_speeds(truck, 4.0, (0.1, 100.0))
+    np.testing.assert_allclose(found, expected)
+    assert all(3.0 <= v <= 7.0 for v in resonance_speeds(truck, 4.0, (3.0, 7.0)))
+
+
+def run(monkeypatch, *arguments):
+    monkeypatch.setattr(sys, "argv", ["trundle", *map(str, arguments)])
+    try:
+        main()
+    except SystemExit as stop:
+        return stop.code or 0
+    return 0
+
+
+def test_the_command_writes_matrix_and_margins(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(TEXT)
+    options = ("--speeds", "10 km/h, 15 km/h", "--roads", "A,B", "--runs", "2", "--damping", "5 %")
+    assert run(monkeypatch, "mitigate", "study.toml", *options) == 0
+    assert "Strictest criterion met at tool: damping 5 %" in capsys.readouterr().out
+    folder = tmp_path / "study-mitigation-results"
+    with (folder / "summary.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2 * 2 * 2
+    assert {row["speed_kmh"] for row in rows} == {"10", "15"}
+    assert all(float(row["margin"]) > 0 for row in rows)
+    assert "data:image/png" in (folder / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "told"),
+    [
+        ("--speeds", "15 kg", "--speeds '15 kg'"),
+        ("--roads", "Z", "must be one of A, B"),
+        ("--slab", "2 mm", "20 mm to 3 m"),
+        ("--damping", "0 %", "above 0"),
+        ("--isolator", "2 Hz", "2 Hz / 10 %"),
+        ("--vehicle", "bicycle", "must be one of"),
+    ],
+)
+def test_changes_that_cannot_be_are_refused(tmp_path, monkeypatch, capsys, option, value, told):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(TEXT)
+    assert run(monkeypatch, "mitigate", "study.toml", option, value) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "study-mitigation-results").exists()

@@ -81,7 +81,7 @@ class PlaceResponses:
 
     @property
     def frequencies(self) -> Float[Array, " lines"]:
-        """Frequencies of the spectral lines [Hz]."""
+        """Return the frequencies of the spectral lines [Hz]."""
         return np.fft.rfftfreq(self.n_padded, self.dt)
 
     def spectra(

@@ -74,7 +74,7 @@ class RecordResult:
 
     @property
     def warnings(self) -> tuple[FitnessWarning, ...]:
-        """Doubts about the record."""
+        """Return the doubts about the record."""
         return self.runs.warnings
 
 

@@ -52,7 +52,7 @@ class MapPlan:
 
     @property
     def places(self) -> Float[Array, "places 2"]:
-        """Places in plan, x running fastest [m]."""
+        """Return the places in plan, x running fastest [m]."""
         return np.stack(np.meshgrid(self.x, self.y), axis=-1).reshape(-1, 2)
 
     @property

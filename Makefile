@@ -60,6 +60,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/direct_ensemble.py
 	$(BIN)/python benchmarks/modes.py --eigsh
 	$(BIN)/python benchmarks/exact_statistics.py
+	$(BIN)/python benchmarks/floor_map.py
 	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/memory.py
 

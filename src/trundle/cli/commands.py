@@ -7,7 +7,7 @@ from pathlib import Path
 
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.sketch import plan_sketch
-from trundle.criteria import Criterion, all_criteria
+from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
 from trundle.dynamics import natural_modes
 from trundle.errors import InputError
 from trundle.study.build import load_study
@@ -116,13 +116,20 @@ def vehicles() -> None:
         print(f"source: {vehicle.source}\n")
 
 
+_SHOWN: dict[str, tuple[str, float]] = {
+    "band_rms_velocity": ("um/s", MICROMETRE_PER_SECOND),
+    "band_rms_displacement": ("um", 1e-6),
+    "response_factor": ("", 1.0),
+    "vdv": ("m/s^1.75", 1.0),
+}
+
+
 def _corners(criterion: Criterion) -> str:
-    velocity = criterion.quantity == "band_rms_velocity"
-    unit, scale = ("um/s", MICROMETRE_PER_SECOND) if velocity else ("gal", GAL)
-    if criterion.frequencies[0] == 0.0:
-        return f"{criterion.limits[0] / scale:g} {unit} at all frequencies"
+    unit, scale = _SHOWN.get(criterion.quantity, ("gal", GAL))
+    if criterion.quantity not in BY_FREQUENCY:
+        return f"{criterion.limits[0] / scale:g} {unit}".rstrip()
     return ", ".join(
-        f"{limit / scale:g} {unit} at {f:g} Hz"
+        f"{limit / scale:.4g} {unit} at {f:g} Hz"
         for f, limit in zip(criterion.frequencies, criterion.limits, strict=True)
     )
 

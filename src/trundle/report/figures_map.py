@@ -16,8 +16,9 @@ from trundle.report.canvas import COLOURS, new_figure
 from trundle.report.map_data import MapView, class_scale
 from trundle.study.maps import MapPlan
 from trundle.study.model import Study
+from trundle.units import MICROMETRE_PER_SECOND
 
-__all__ = ["class_map_figure", "criterion_map_figure"]
+__all__ = ["class_map_figure", "criterion_map_figure", "rms_map_figure", "share_map_figure"]
 
 _COLUMNS = 4
 
@@ -70,6 +71,38 @@ def criterion_map_figure(study: Study, views: list[MapView]) -> Figure:
         bar.set_label(f"margin to {plan.criterion} = limit / level (below 1 fails; line at 1)")
         bar.set_ticks([0.1, 0.3, 1.0, 3.0, 10.0])
         bar.ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    return figure
+
+
+def share_map_figure(study: Study, views: list[MapView]) -> Figure:
+    """Draw the share of runs above one criterion at every place of every view."""
+    plan = study.map
+    assert plan is not None  # there are views
+    figure, panels = _panels(study, views)
+    image = None
+    for panel, view in zip(panels, views, strict=True):
+        share = 100.0 * view.classes.share_exceeding[view.classes.index(plan.criterion)]
+        look = {"cmap": "cividis_r", "vmin": 0.0, "vmax": 100.0}
+        image = _image(panel, study, plan, share, view.routes, **look)
+    if image is not None:
+        bar = figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
+        bar.set_label(f"runs above {plan.criterion} [%]")
+    return figure
+
+
+def rms_map_figure(study: Study, views: list[MapView]) -> Figure:
+    """Draw the RMS velocity over the record at every place of every view."""
+    plan = study.map
+    assert plan is not None  # there are views
+    figure, panels = _panels(study, views)
+    levels = [view.rms_velocity / MICROMETRE_PER_SECOND for view in views]
+    norm = LogNorm(min(map(np.min, levels)), max(map(np.max, levels)))
+    image = None
+    for panel, view, level in zip(panels, views, levels, strict=True):
+        image = _image(panel, study, plan, level, view.routes, cmap="cividis_r", norm=norm)
+    if image is not None:
+        bar = figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
+        bar.set_label("record RMS velocity [um/s]")
     return figure
 
 

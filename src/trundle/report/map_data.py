@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
+from trundle._typing import Array
 from trundle.criteria import ClassMap, envelope_of
 from trundle.study.run import StudyResult
+from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = ["MapView", "class_scale", "map_payload", "map_views"]
 
@@ -27,18 +30,28 @@ class MapView:
         Margins, exceedance and classes.
     routes : tuple of str
         Names of the routes driven.
+    rms_velocity, peak_acceleration : ndarray of float, shape (n_places,)
+        Levels that the share of runs stays below [m/s], [m/s2]; peaks NaN if not asked for.
     """
 
     title: str
     classes: ClassMap
     routes: tuple[str, ...]
+    rms_velocity: Float[Array, " places"]
+    peak_acceleration: Float[Array, " places"]
 
 
 def map_views(result: StudyResult) -> list[MapView]:
     """Return the map of every case and road, and last the worst of all single vehicles' cases."""
     driven = {case.name: case.routes for case in result.study.cases}
     views = [
-        MapView(title=f"{key.case}, class {key.road}", classes=one.classes, routes=driven[key.case])
+        MapView(
+            title=f"{key.case}, class {key.road}",
+            classes=one.classes,
+            routes=driven[key.case],
+            rms_velocity=one.rms_velocity,
+            peak_acceleration=one.peak_acceleration,
+        )
         for key, one in result.maps.items()
     ]
     single = [view for view in views if len(view.routes) == 1]
@@ -48,6 +61,8 @@ def map_views(result: StudyResult) -> list[MapView]:
                 title="worst of all single routes",
                 classes=envelope_of([view.classes for view in single]),
                 routes=tuple(result.study.drives),
+                rms_velocity=np.max([view.rms_velocity for view in single], axis=0),
+                peak_acceleration=np.max([view.peak_acceleration for view in single], axis=0),
             )
         )
     return views
@@ -98,9 +113,11 @@ def _view(result: StudyResult, view: MapView, shape: tuple[int, int]) -> dict[st
         f"{names[rank]}<br>margin to {plan.criterion} {margin:.2f}"
         + (f" at {band:.3g} Hz" if np.isfinite(band) else "")
         + f"<br>{100 * share:.0f} % of the runs above it"
-        for rank, margin, band, share in zip(
+        + f"<br>record RMS {rms / MICROMETRE_PER_SECOND:.3g} um/s"
+        + (f", peak {peak / GAL:.3g} gal" if np.isfinite(peak) else "")
+        for rank, margin, band, share, rms, peak in zip(
             ranks, classes.margin[i], classes.governing_band[i], classes.share_exceeding[i],
-            strict=True,
+            view.rms_velocity, view.peak_acceleration, strict=True,
         )
     ]  # fmt: skip
     return {

@@ -234,7 +234,8 @@ def _map_figures(result: StudyResult) -> Iterator[Drawing]:
     views = map_views(result)
     about = (
         f"{len(plan.places)} places, level that {plan.percentile:g} % of {plan.runs} runs stay "
-        f"below, averaging {plan.averaging}; routes dashed, points crossed, columns grey."
+        f"below, averaging {plan.averaging}; a cell shows the place at its middle. "
+        "Routes dashed, points crossed, columns grey."
     )
     yield (
         Picture(name="map_classes", title="Class map", caption=f"Strictest criterion met. {about}"),
@@ -243,6 +244,14 @@ def _map_figures(result: StudyResult) -> Iterator[Drawing]:
     yield (
         Picture(name="map_margin", title=f"Margin to {plan.criterion}", caption=about),
         lambda: figures_map.criterion_map_figure(result.study, views),
+    )
+    yield (
+        Picture(name="map_share", title=f"Share of runs above {plan.criterion}", caption=about),
+        lambda: figures_map.share_map_figure(result.study, views),
+    )
+    yield (
+        Picture(name="map_rms", title="RMS velocity over the floor", caption=about),
+        lambda: figures_map.rms_map_figure(result.study, views),
     )
 
 

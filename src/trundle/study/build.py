@@ -12,20 +12,18 @@ import numpy as np
 from trundle.criteria import Criterion, find_criterion
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
 from trundle.errors import InputError, Problem, StudyError
-from trundle.road import RoadClass, RoughnessBand
+from trundle.road import RoughnessBand
 from trundle.route import ConstantSpeed, Hat, Hermite, Route
-from trundle.signals import Isolation, Isolator, TransmissibilityTable
+from trundle.signals import Isolation
 from trundle.simulate import Coupled, Decoupled
 from trundle.structure import (
     FloorPlan,
-    Material,
-    Rectangle,
-    ShellSection,
     build_floor,
     reference_plan,
 )
 from trundle.study import schema
 from trundle.study._relations import MAPPED, map_problems, relation_problems
+from trundle.study.convert import floor_plan_of, isolation_of, road_of, vehicle_of
 from trundle.study.maps import MapPlan, map_places
 from trundle.study.model import (
     Assessment,
@@ -41,7 +39,7 @@ from trundle.study.model import (
 )
 from trundle.study.read import StudyFile, read_study
 from trundle.study.user_criteria import read_criteria
-from trundle.vehicle import VEHICLES, Axle, Body, Hinge, Vehicle, build_vehicle
+from trundle.vehicle import Vehicle
 
 __all__ = ["load_study"]
 
@@ -119,7 +117,7 @@ class _Builder:
             mesh_size=mesh_size,
             drives=drives,
             cases=singles + traffic,
-            roads={road_label(r): _road(r) for r in file.items("road")},
+            roads={road_label(r): road_of(r) for r in file.items("road")},
             band=band,
             band_follows_dt=follows,
             points={p.name: p.at for p in file.items("point")},
@@ -154,7 +152,7 @@ class _Builder:
         plan = (
             reference_plan()
             if isinstance(section, schema.ReferenceFloorSection)
-            else self._try("floor", lambda: _floor_plan(section))
+            else self._try("floor", lambda: floor_plan_of(section))
         )
         if plan is not None:
             self._mesh_problems(plan, section.mesh_size)
@@ -185,7 +183,7 @@ class _Builder:
 
     def _vehicles(self) -> dict[str, Vehicle]:
         made = {
-            name: self._try(f"vehicle.{name}", lambda n=name, s=section: _vehicle(n, s))
+            name: self._try(f"vehicle.{name}", lambda n=name, s=section: vehicle_of(n, s))
             for name, section in self.file.vehicles.items()
         }
         return {name: vehicle for name, vehicle in made.items() if vehicle is not None}
@@ -369,7 +367,7 @@ class _Builder:
         for i, section in self.file.lists.get("point", []):
             if section.isolator is not None:
                 made = self._try(
-                    f"point[{i + 1}].isolator", lambda s=section.isolator: _isolation(s)
+                    f"point[{i + 1}].isolator", lambda s=section.isolator: isolation_of(s)
                 )
                 if made is not None:
                     found[section.name] = made
@@ -404,15 +402,6 @@ class _Builder:
         )
 
 
-def _isolation(section: schema.IsolatorSection) -> Isolation:
-    if section.table is not None and section.frequency is None and section.damping is None:
-        f, ratios = np.array(section.table).T
-        return TransmissibilityTable(frequencies=f, ratios=ratios)
-    if section.table is None and section.frequency is not None and section.damping is not None:
-        return Isolator(frequency=section.frequency, damping_ratio=section.damping)
-    raise InputError("an isolator is either a frequency and a damping, or a table")
-
-
 def _ratio_with_newmark(place: str) -> Problem:
     return Problem(
         place=f"{place}.damping",
@@ -422,50 +411,3 @@ def _ratio_with_newmark(place: str) -> Problem:
         remedy='write { rayleigh_alpha = "0.8587 1/s", rayleigh_beta = "0.001 s" }, which is 3 % '
         'at 3.75 and 5.8 Hz, or integration = "modal"',
     )
-
-
-def _road(section: schema.RoadSection) -> RoadClass:
-    return RoadClass(section.class_, level=section.level, waviness=section.waviness)
-
-
-def _floor_plan(section: schema.PlanFloorSection) -> FloorPlan:
-    material = Material(**dict(section.material))
-    x, y = np.array(section.x_lines), np.array(section.y_lines)
-
-    def size(rectangle: Any) -> Rectangle | None:
-        return None if rectangle is None else Rectangle(**dict(rectangle))
-
-    return FloorPlan(
-        name="plan",
-        x_lines=x,
-        y_lines=y,
-        x_extent=section.x_extent or (float(x[0]), float(x[-1])),
-        y_extent=section.y_extent or (float(y[0]), float(y[-1])),
-        slab=ShellSection(
-            thickness=section.slab_thickness,
-            material=material,
-            superimposed_mass=section.superimposed_mass,
-        ),
-        material=material,
-        beams_x=size(section.beams_x),
-        beams_y=size(section.beams_y),
-        secondary_y=size(section.secondary_y),
-        secondary_per_bay=section.secondary_per_bay,
-        column=size(section.column),
-        storey_below=section.storey_below,
-        storey_above=section.storey_above,
-        edges=dict(section.edges),
-        eccentric_beams=section.eccentric_beams,
-    )
-
-
-def _vehicle(name: str, section: Any) -> Vehicle:
-    if isinstance(section, schema.PlanarVehicleSection):
-        return build_vehicle(
-            name=name,
-            bodies=tuple(Body(**dict(b)) for b in section.bodies),
-            axles=tuple(Axle(**dict(a)) for a in section.axles),
-            hinges=tuple(Hinge(**dict(h)) for h in section.hinges),
-            source="study file",
-        )
-    return VEHICLES[section.kind]()

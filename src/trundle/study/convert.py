@@ -37,6 +37,7 @@ def floor_plan_of(section: schema.PlanFloorSection) -> FloorPlan:
     x, y = np.array(section.x_lines), np.array(section.y_lines)
 
     def size(rectangle: Any) -> Rectangle | None:
+        """Return a rectangle, if one is given."""
         return None if rectangle is None else Rectangle(**dict(rectangle))
 
     return FloorPlan(

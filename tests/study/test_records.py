@@ -74,16 +74,17 @@ def test_integration_does_not_drift():
     fs, t = 200.0, np.arange(0, 40, 1 / 200.0)
     v = 1e-4 * np.exp(-(((t - 20) / 1.5) ** 2)) * np.sin(2 * np.pi * 5 * t)
     a = np.gradient(v, t, edge_order=2)
+    wander = 1e-3 * np.sin(2 * np.pi * 0.04 * t)  # 4 mm/s if it were integrated
     record = Record(
-        samples=(a + 0.3)[None],
+        samples=(a + 0.3 + wander)[None],
         sampling_frequency=fs,
         quantity="acceleration",
         channel_names=("z",),
     )
     _, velocity, acceleration = motion_of(record)
-    assert np.abs(velocity[0] - v).max() < 0.01 * v.max()
+    assert np.abs(velocity[0] - v).max() < 0.02 * v.max()
     assert np.abs(acceleration[0] - a).max() < 0.01 * a.max()
-    assert np.abs(velocity[0][:1000]).max() < 1e-3 * v.max()
+    assert np.abs(velocity[0][:1000]).max() < 0.02 * v.max()
 
 
 def test_every_format_holds_the_same_record(tmp_path):

@@ -163,10 +163,10 @@ def _ends(name: str, row: Array, fs: float) -> list[FitnessWarning]:
 def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, Array]:
     """Return displacement, velocity and acceleration of a record, without drift.
 
-    Mean and trend are taken off, both ends faded in and out, and everything is done in one
-    step on the padded record's spectrum: integration by ``1 / (i omega)``, and the magnitude of a
-    Butterworth high-pass of order 4, without its delay. Nothing is integrated in time, so nothing
-    drifts.
+    Mean and trend are taken off, and the record is carried on beyond both ends with its own slope
+    while it fades. Then all is done in one step on its spectrum: integration by ``1 / (i omega)``,
+    and the magnitude of a Butterworth high-pass of order 4, without its delay. Nothing is
+    integrated in time, so nothing drifts. The motion found is faded in and out within a second.
 
     Parameters
     ----------
@@ -183,8 +183,10 @@ def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, 
     fs, n = record.sampling_frequency, record.samples.shape[1]
     positive("high_pass", high_pass)
     padding = round(_PERIODS / high_pass * fs)
-    size = fft.next_fast_len(n + 2 * padding, real=True)
-    spectrum = fft.rfft(_settled(record.samples, fs), size, axis=-1)
+    reach = min(padding, n - 1)
+    extended = _carried_on(_level(record.samples), reach)
+    size = fft.next_fast_len(n + 2 * reach + padding, real=True)
+    spectrum = fft.rfft(extended, size, axis=-1)
     f = fft.rfftfreq(size, 1.0 / fs)
     omega = 2j * np.pi * f
     passed = np.zeros_like(f)
@@ -194,18 +196,29 @@ def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, 
     velocity = spectrum * passed * (inverse if record.quantity == "acceleration" else 1.0)
     acceleration = spectrum * passed * (1.0 if record.quantity == "acceleration" else omega)
     spectra = (velocity * inverse, velocity, acceleration)
-    displacement, v, a = (fft.irfft(s, size, axis=-1)[..., :n] for s in spectra)
+    fade = _fade(n, fs)
+    inside = slice(reach, reach + n)
+    displacement, v, a = (fft.irfft(s, size, axis=-1)[..., inside] * fade for s in spectra)
     return displacement, v, a
 
 
-def _settled(samples: Array, fs: float) -> Array:
-    """Take mean and trend off, and fade both ends."""
-    n = samples.shape[1]
-    t = np.linspace(-1.0, 1.0, n)
+def _level(samples: Array) -> Array:
+    """Take mean and trend off."""
+    t = np.linspace(-1.0, 1.0, samples.shape[1])
     slope = (samples @ t) / (t @ t)
-    level = samples - samples.mean(axis=1, keepdims=True) - slope[:, None] * t
+    return samples - samples.mean(axis=1, keepdims=True) - slope[:, None] * t
+
+
+def _carried_on(samples: Array, reach: int) -> Array:
+    """Turn the record about its first and its last sample, and fade what is added."""
+    fade = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, reach + 1) / (reach + 1)))
+    before = (2.0 * samples[:, :1] - samples[:, 1 : reach + 1]) * fade
+    after = (2.0 * samples[:, -1:] - samples[:, -2 : -2 - reach : -1]) * fade
+    return np.concatenate([before[:, ::-1], samples, after], axis=1)
+
+
+def _fade(n: int, fs: float) -> Array:
+    """Return a second of fading in and out, at most a twentieth of the record each."""
     width = max(2, min(round(_TAPER * fs), n // 20))
-    fade = 0.5 * (1.0 - np.cos(np.pi * (np.arange(width) + 0.5) / width))
-    level[:, :width] *= fade
-    level[:, -width:] *= fade[::-1]
-    return level
+    rise = 0.5 * (1.0 - np.cos(np.pi * (np.arange(width) + 0.5) / width))
+    return np.concatenate([rise, np.ones(n - 2 * width), rise[::-1]])

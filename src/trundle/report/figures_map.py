@@ -96,13 +96,17 @@ def rms_map_figure(study: Study, views: list[MapView]) -> Figure:
     assert plan is not None  # there are views
     figure, panels = _panels(study, views)
     levels = [view.rms_velocity / MICROMETRE_PER_SECOND for view in views]
-    norm = LogNorm(min(map(np.min, levels)), max(map(np.max, levels)))
+    low, high = (float(take([take(level) for level in levels])) for take in (np.min, np.max))
+    norm = LogNorm(low, high)
     image = None
     for panel, view, level in zip(panels, views, levels, strict=True):
         image = _image(panel, study, plan, level, view.routes, cmap="cividis_r", norm=norm)
     if image is not None:
         bar = figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
         bar.set_label("record RMS velocity [um/s]")
+        ticks = [float(f"{v:.2g}") for v in np.geomspace(low, high, 6)[1:-1]]
+        bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
+        bar.ax.minorticks_off()
     return figure
 
 

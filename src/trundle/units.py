@@ -176,7 +176,12 @@ def motion_scale(
     registry, _ = _registry()
     quantity = _parsed(unit, registry)
     if sensitivity:
-        quantity = quantity / _parsed(sensitivity, registry)
+        divisor = _parsed(sensitivity, registry)
+        if not divisor.magnitude > 0.0:
+            raise InputError(f"sensitivity {sensitivity!r} must be greater than 0")
+        quantity = quantity / divisor
+    if not quantity.magnitude > 0.0:
+        raise InputError(f"{unit!r} must be greater than 0")
     kinds: tuple[tuple[str, Literal["acceleration", "velocity"]], ...] = (
         ("m/s**2", "acceleration"),
         ("m/s", "velocity"),

@@ -220,3 +220,12 @@ def test_response_factor_and_dose():
     )
     assert often == pytest.approx(2.0 * once)
     assert 0.05 * (0.375 * 12) ** 0.25 < once < 1.1 * 0.05 * (0.375 * 20) ** 0.25
+
+
+def test_what_lies_below_all_bands_is_not_passed():
+    """A curve from 0.5 Hz asks for bands that are never computed: 0.5, 0.63 and 0.8 Hz."""
+    points = {"frequencies": np.array([0.5, 80.0]), "limits": np.array([1e-5, 1e-5])}
+    curve = dataclasses.replace(find_criterion("VC-C"), **points)
+    verdict = assess(sine_runs(10.0, 1e-12), curve)[0]
+    assert verdict.status == "not assessed"
+    assert verdict.unresolved == (0.5, 0.63, 0.8)

@@ -113,6 +113,9 @@ def assess(
     high_pass: Annotated[
         str, typer.Option("--high-pass", help="Motion below this frequency is drift.")
     ] = "0.5 Hz",  # noqa: S107 - a filter, not a password
+    events: Annotated[
+        float, typer.Option("--events", min=1.0, help="Passages that a vibration dose is for.")
+    ] = 1.0,
     simulation: Annotated[
         Path | None,
         typer.Option("--simulation", help="Results folder of a study, to lay the record over."),
@@ -141,6 +144,7 @@ def assess(
         criteria=criteria,
         averaging=averaging,
         high_pass=high_pass,
+        events=events,
         simulation=simulation,
         point=point,
         out=out,

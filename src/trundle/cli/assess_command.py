@@ -29,6 +29,7 @@ def assess(
     criteria: str,
     averaging: str,
     high_pass: str,
+    events: float,
     simulation: Path | None,
     point: str | None,
     out: Path | None,
@@ -47,7 +48,9 @@ def assess(
     simulated = () if simulation is None else read_simulated(simulation, point=point)
     records = [read_record(file, options) for file in files]
     for record, place in zip(records, places, strict=True):
-        result = assess_record(record, curves, averaging=rule, high_pass=limit, simulated=simulated)
+        result = assess_record(
+            record, curves, averaging=rule, high_pass=limit, events=events, simulated=simulated
+        )
         with new_results_folder(place) as folder:
             write_record_report(result, folder)
             mark_results(folder)

@@ -42,6 +42,8 @@ def mitigate(
     if not at or at[0] <= 0.0:
         raise InputError(f"--speeds {speeds!r}: give speeds above 0, such as '5 km/h, 15 km/h'")
     classes = _each("--roads", roads, lambda text: one_of("--roads", text, CLASS_NAMES))
+    if not classes:
+        raise InputError(f"--roads {roads!r}: give road classes, such as 'A, B'")
     changes = _changes(vehicles, slabs, dampings, isolators)
     with progress_bar() as tell, new_results_folder(out) as folder:
         sweep = try_changes(
@@ -50,6 +52,8 @@ def mitigate(
         write_mitigation_report(sweep, folder)
         mark_results(folder)
     _print(sweep)
+    for warning in sweep.warnings():
+        print(f"warning: {warning}")
     print(f"\nreport: {out.resolve() / 'report.html'}")
 
 

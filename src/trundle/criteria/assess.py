@@ -12,13 +12,12 @@ from trundle._typing import Array
 from trundle.criteria.curve import BY_FREQUENCY, Criterion
 from trundle.criteria.verdict import BandOutcomes, Status, Verdict
 from trundle.response import BandSpectra, Reduced, SpectrumQuantity, reduce_runs
-from trundle.signals import Averaging, mid_band_frequencies, nominal_frequency
+from trundle.signals import Averaging, nominal_frequency
 from trundle.simulate import Runs
 
 __all__ = ["assess", "assess_reduced", "best_class", "spectra_asked_for"]
 
 _TOP = 80.0  # Hz: how far single numbers are asked to reach
-_ABOVE = mid_band_frequencies(20, 23)  # bands beyond those computed, to 200 Hz
 
 
 def assess(
@@ -190,8 +189,7 @@ def _missing(spectra: BandSpectra, criterion: Criterion, asked: Array) -> tuple[
     lost = spectra.mid_band[asked & ~spectra.resolved]
     if spectra.quantity == "narrow_band_acceleration":
         return tuple(float(f) for f in lost)
-    beyond = _ABOVE[np.isfinite(criterion.limit(_ABOVE))]
-    return tuple(nominal_frequency(f) for f in (*lost, *beyond))
+    return tuple(nominal_frequency(f) for f in (*lost, *criterion.bands_beyond()))
 
 
 def _outcomes(spectra: BandSpectra, level: Array, limits: Array, usable: Array) -> BandOutcomes:

@@ -138,7 +138,7 @@ def _by_band(
     asked = np.isfinite(limits)
     usable = asked & floor.resolved
     n_places = len(floor.places)
-    beyond = criterion.frequencies[-1] > floor.mid_band[-1] * 1.02
+    beyond = len(criterion.bands_beyond()) > 0
     complete = bool(usable.any() and not (asked & ~floor.resolved).any() and not beyond)
     if not usable.any():
         nothing = np.full(n_places, np.nan)

@@ -16,6 +16,7 @@ from trundle._checks import frozen_array, one_of, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.response import SpectrumQuantity
+from trundle.signals import mid_band_frequencies
 
 __all__ = ["BY_FREQUENCY", "VC", "Criterion", "Quantity", "all_criteria", "find_criterion"]
 
@@ -69,6 +70,14 @@ class Criterion:
     def __post_init__(self) -> None:
         """Freeze the corners; the last may be at infinity."""
         frequencies = np.array(self.frequencies, dtype=float)
+        if len(frequencies) and (
+            frequencies[0] < 0.0 or (frequencies[0] == 0.0 and len(set(self.limits)) > 1)
+        ):
+            raise InputError(
+                f"criterion {self.name!r}: frequencies must be above 0, for limits are straight on "
+                "logarithmic axes"
+            )
+        one_of("axis", self.axis, ("vertical", "horizontal", "each axis"))
         if len(frequencies) < 2 or np.any(np.diff(frequencies) <= 0.0):
             raise InputError(f"criterion {self.name!r}: frequencies must rise")
         frequencies.setflags(write=False)
@@ -87,6 +96,11 @@ class Criterion:
             return np.where(inside, self.limits[0], np.nan)
         value = np.exp(np.interp(np.log(f), np.log(self.frequencies), np.log(self.limits)))
         return np.where(inside, value, np.nan)
+
+    def bands_beyond(self) -> Float[Array, " bands"]:
+        """Return mid-bands of its range that are never computed: below 1 Hz, above 80 Hz."""
+        outside = np.concatenate([mid_band_frequencies(-10, -1), mid_band_frequencies(20, 23)])
+        return outside[np.isfinite(self.limit(outside))]
 
     def flattened(self) -> Criterion:
         """Return the curve with its value at 8 Hz held constant down to 1 Hz.

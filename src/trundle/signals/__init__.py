@@ -23,7 +23,13 @@ from trundle.signals.levels import (
     running_rms,
 )
 from trundle.signals.psd import amplitude_spectrum, welch_psd
-from trundle.signals.record import Record, RecordQuantity, motion_of, record_warnings
+from trundle.signals.record import (
+    Record,
+    RecordQuantity,
+    clipped_channels,
+    motion_of,
+    record_warnings,
+)
 from trundle.signals.weighting import (
     BASE_ACCELERATION,
     Weighting,
@@ -55,6 +61,7 @@ __all__ = [
     "band_maxima",
     "band_peaks",
     "behind",
+    "clipped_channels",
     "crest_factor",
     "filter_bands",
     "filter_zero_phase",

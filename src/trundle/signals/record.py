@@ -13,7 +13,7 @@ from trundle._checks import frozen_array, one_of, positive, set_frozen
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 
-__all__ = ["Record", "RecordQuantity", "motion_of", "record_warnings"]
+__all__ = ["Record", "RecordQuantity", "clipped_channels", "motion_of", "record_warnings"]
 
 RecordQuantity: TypeAlias = Literal["acceleration", "velocity"]
 """What a sensor measured."""
@@ -100,13 +100,30 @@ def _rows(record: Record) -> zip[tuple[str, Array]]:
     return zip(record.channel_names, record.samples, strict=True)
 
 
-def _clipped(name: str, row: Array) -> list[FitnessWarning]:
-    held = 0
-    for extreme in (row.max(), row.min()):
+def clipped_channels(record: Record) -> tuple[str, ...]:
+    """Return the channels that were overloaded."""
+    return tuple(name for name, row in _rows(record) if _held(row))
+
+
+def _held(row: Array) -> int:
+    """Return how many samples stand still at an extreme, where more do than nearby levels explain.
+
+    A quantised crest stands still too: over about as many samples at the level below it.
+    """
+    levels = np.unique(row)
+    total = 0
+    for extreme, beside in ((levels[-1], levels[-2]), (levels[0], levels[1])):
         at = (row == extreme).astype(np.int8)
         edges = np.flatnonzero(np.diff(np.concatenate([[0], at, [0]])))
         lengths = edges[1::2] - edges[::2]
-        held += int(lengths[lengths >= _FLAT].sum())
+        held = int(lengths[lengths >= _FLAT].sum())
+        if held > 3 * np.count_nonzero(row == beside):
+            total += held
+    return total
+
+
+def _clipped(name: str, row: Array) -> list[FitnessWarning]:
+    held = _held(row)
     if held == 0:
         return []
     return [
@@ -145,7 +162,8 @@ def _ends(name: str, row: Array, fs: float) -> list[FitnessWarning]:
     width = max(2, round(0.25 * fs))
     centred = row - row.mean()
     whole = float(np.sqrt(np.mean(centred**2)))
-    peak = float(np.sqrt(np.max(np.convolve(centred**2, np.ones(width) / width, "valid"))))
+    energy = np.cumsum(np.concatenate([[0.0], centred**2]))
+    peak = float(np.sqrt(np.max(energy[width:] - energy[:-width]) / width))
     if peak < 3.0 * whole:
         return []  # steady motion, of which any part is as good
     ends = (("starts", centred[:width]), ("ends", centred[-width:]))

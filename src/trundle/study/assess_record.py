@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +11,16 @@ import xarray as xr
 from jaxtyping import Float
 
 from trundle._typing import Array
-from trundle.criteria import Criterion, Verdict, assess_reduced, spectra_asked_for
+from trundle.criteria import (
+    BY_FREQUENCY,
+    Criterion,
+    Verdict,
+    assess_reduced,
+    spectra_asked_for,
+)
 from trundle.errors import FitnessWarning, InputError
 from trundle.response import Reduced, reduce_runs, runs_of_record, without_short_bands
-from trundle.signals import Averaging, Record
+from trundle.signals import Averaging, Record, clipped_channels
 from trundle.simulate import Runs
 
 __all__ = ["RecordResult", "Simulated", "assess_record", "read_simulated"]
@@ -103,10 +109,15 @@ def assess_record(
         How many such events a vibration dose is for.
     simulated : sequence of Simulated
         Simulations to lay beside it.
+
+    Notes
+    -----
+    A clipped channel passes nothing, for its true levels are higher; nor does a record too short
+    for the 1 Hz band pass a single number that weighs it.
     """
-    if high_pass > 0.8:
+    if high_pass > 0.5:
         raise InputError(
-            f"the high-pass frequency must leave the 1 Hz band whole: 0.8 Hz at most; got "
+            f"the high-pass frequency must leave the 1 Hz band whole: 0.5 Hz at most; got "
             f"{high_pass:g} Hz"
         )
     many = tuple(criteria)
@@ -114,7 +125,16 @@ def assess_record(
     reduced = reduce_runs(runs, averaging=averaging, quantities=spectra_asked_for(many))
     reduced = without_short_bands(reduced, record)
     top = record.sampling_frequency / 2.5
-    verdicts = assess_reduced(reduced, many, percentile=100.0, top=top, events=events)
+    found = assess_reduced(reduced, many, percentile=100.0, top=top, events=events)
+    doubtful = clipped_channels(record)
+    short = record.channel_names if record.lowest_frequency > 1.0 else ()
+    verdicts = tuple(
+        replace(v, status="not assessed")
+        if v.status == "pass"
+        and (v.point in doubtful or (v.point in short and v.criterion.quantity not in BY_FREQUENCY))
+        else v
+        for v in found
+    )
     return RecordResult(
         record=record,
         runs=runs,

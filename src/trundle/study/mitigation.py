@@ -10,12 +10,13 @@ from threadpoolctl import threadpool_limits
 
 from trundle.criteria import Verdict, assess_reduced, spectra_asked_for
 from trundle.dynamics import ModalRatio, Modes
-from trundle.errors import InputError
+from trundle.errors import FitnessWarning, InputError
 from trundle.response import behind_isolators, reduce_rougher
 from trundle.road import RoadClass
 from trundle.route import ConstantSpeed
 from trundle.signals import Isolation
 from trundle.simulate import PreparedFloor, StaticFlexibility, lay_out, prepare, runs_with_mean
+from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
 from trundle.structure import build_floor
 from trundle.study.mode_cache import modes_of
 from trundle.study.model import Case, MethodPlan, Study
@@ -68,6 +69,8 @@ class Outcome:
         Road class.
     verdicts : tuple of Verdict
         By point, then by criterion.
+    warnings : tuple of FitnessWarning
+        Doubts about it.
     """
 
     change: str
@@ -75,6 +78,7 @@ class Outcome:
     speed: float
     road: str
     verdicts: tuple[Verdict, ...]
+    warnings: tuple[FitnessWarning, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,6 +107,16 @@ class Sweep:
     runs: int
     outcomes: tuple[Outcome, ...]
     resonances: Mapping[str, tuple[float, ...]]
+
+    def warnings(self) -> tuple[str, ...]:
+        """Return every doubt once, with the speed and the road that it is about."""
+        found: dict[str, None] = {}
+        for one in self.outcomes:
+            road = f", class {one.road}"
+            for warning in one.warnings:
+                place = road if warning.subject == LOST_CONTACT else ""
+                found[f"{3.6 * one.speed:.3g} km/h{place}: {warning}"] = None
+        return tuple(found)
 
     def margin(self, change: str, case: str, road: str, point: str, criterion: str) -> np.ndarray:
         """Return the margin to a criterion at every speed, (n_speeds,)."""
@@ -174,8 +188,9 @@ def try_changes(
                             speed=speed,
                             road=road,
                             verdicts=verdicts,
+                            warnings=warnings,
                         )
-                        for road, verdicts in _verdicts(
+                        for road, verdicts, warnings in _verdicts(
                             at_speed, case, method, prepared, roads=roads, runs=runs
                         )
                     ]
@@ -252,7 +267,7 @@ def _verdicts(
     *,
     roads: Sequence[str],
     runs: int,
-) -> Iterator[tuple[str, tuple[Verdict, ...]]]:
+) -> Iterator[tuple[str, tuple[Verdict, ...], tuple[FitnessWarning, ...]]]:
     """Run one case at one speed; roads differ by a factor alone."""
     assessment = study.assessment
     assert assessment is not None  # the caller has looked
@@ -286,4 +301,6 @@ def _verdicts(
             top=min(found.f_max, found.sampling_frequency / 2.5),
             events=assessment.events,
         )
-        yield road, verdicts
+        pulling = contact_warnings(float(one.tension.any(axis=1).mean()))
+        doubts = tuple(w for w in found.warnings if w.subject != LOST_CONTACT)
+        yield road, verdicts, (*pulling, *doubts)

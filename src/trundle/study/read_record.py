@@ -6,6 +6,7 @@ import csv
 import re
 import warnings
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,11 +21,10 @@ from trundle.units import motion_scale, to_si
 __all__ = ["RecordOptions", "read_record"]
 
 _LARGEST = 2_000_000_000  # bytes
-_UNEVEN = 0.01  # of a time step, that time stamps may stray by
 _MISMATCH = 0.005  # relative, between a stated rate and that of the time stamps
-_HEADING = re.compile(r"^\s*(?P<name>[^\[\(]*?)\s*[\[\(](?P<unit>[^\]\)]+)[\]\)]\s*$")
+_HEADING = re.compile(r"^\s*(?P<name>.*?)\s*(\[(?P<square>[^\[\]]+)\]|\((?P<round>[^()]+)\))\s*$")
 _WORDS = re.compile(r"[^\s\[\(]+\s*[\[\(][^\]\)]*[\]\)]|\S+")  # name [unit], or a word
-_TIME = re.compile(r"^\s*(t|time|zeit|temps)\b", re.IGNORECASE)
+_TIME = re.compile(r"^\s*(t|time\w*|elapsed\w*|zeit|temps)\b", re.IGNORECASE)
 _UFF_ORDINATE = {11: "m/s", 12: "m/s2"}  # codes of what the samples are, of dataset 58
 
 
@@ -56,6 +56,7 @@ class _Raw:
     rate: float | None
     names: tuple[str, ...]
     units: tuple[str, ...]
+    whole: bool = False  # numbers of a WAV file that are shares of a full scale
 
 
 def read_record(path: Path, options: RecordOptions) -> Record:
@@ -104,10 +105,28 @@ def _rate(raw: _Raw, options: RecordOptions, path: Path) -> float:
     return float(raw.rate)
 
 
+def _unit(own: str, options: RecordOptions, path: Path, name: str) -> str:
+    """Return the unit of a channel; what file and command line say must not differ."""
+    wav = path.suffix.lower() == ".wav"
+    if options.full_scale and not wav:
+        raise InputError(f"{path}: --full-scale is for WAV files; say --unit")
+    if own and options.unit and own != options.unit:
+        raise InputError(
+            f"{path}: channel {name!r} is in {own!r} by its heading, and --unit says "
+            f"{options.unit!r}; leave one out"
+        )
+    return options.full_scale or own or options.unit
+
+
 def _in_si(raw: _Raw, options: RecordOptions, path: Path) -> tuple[Array, RecordQuantity]:
+    if raw.whole and not options.full_scale:
+        raise InputError(
+            f"{path}: its numbers are shares of a full scale; say what that is: "
+            "--full-scale '20 m/s2', or in volts with a --sensitivity"
+        )
     scales, quantities = [], set[RecordQuantity]()
     for name, own in zip(raw.names, raw.units, strict=True):
-        unit = options.full_scale or options.unit or own
+        unit = _unit(own, options, path, name)
         if not unit:
             raise InputError(
                 f"{path}: the unit of channel {name!r} is not known; write it in the heading as "
@@ -138,14 +157,22 @@ def _read_csv(path: Path) -> _Raw:
     rows = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
     first = next(rows) if delimiter != " " else _WORDS.findall(lines[0])
     heading = not all(map(_is_number, first))
-    decimal = delimiter == ";" and "," in lines[-1]
     body = lines[1:] if heading else lines
+    decimal = any("," in line for line in body) and (delimiter != "," or '"' in body[0])
     table = _numbers(
         body, delimiter, len(first), path, first_line=2 if heading else 1, comma=decimal
     )
     names, units = zip(*(_heading(h, i, heading=heading) for i, h in enumerate(first)), strict=True)
     has_time = heading and bool(_TIME.match(first[0])) and len(first) > 1
+    if len(table) < 2:
+        raise InputError(f"{path}: holds one sample")
     if not has_time:
+        rising = np.diff(table[:, 0])
+        if len(first) > 1 and np.all(rising > 0.0) and np.ptp(rising) < 0.1 * rising.mean():
+            raise InputError(
+                f"{path}: its first column, {names[0]!r}, rises evenly as time does; give it the "
+                "heading 'time [s]', or leave it out"
+            )
         return _Raw(samples=table.T.copy(), rate=None, names=names, units=units)
     scale = to_si(f"1 {units[0]}", "time") if units[0] else 1.0
     rate = _even_rate(scale * table[:, 0], path)
@@ -157,7 +184,11 @@ def _numbers(
 ) -> Array:
     """Return the table; empty cells and words become not-a-number, which a record refuses."""
     out = np.full((len(lines), width), np.nan)
-    for i, row in enumerate(csv.reader(lines, delimiter=delimiter, skipinitialspace=True)):
+    try:
+        rows = list(csv.reader(lines, delimiter=delimiter, skipinitialspace=True))
+    except csv.Error as error:
+        raise InputError(f"{path}: cannot be read as a table ({error})") from None
+    for i, row in enumerate(rows):
         cells = [cell for cell in row if cell or delimiter != " "]
         if len(cells) != width:
             raise InputError(
@@ -165,7 +196,7 @@ def _numbers(
             )
         for j, cell in enumerate(cells):
             number = cell.replace(",", ".") if comma else cell
-            if _is_number(number):
+            with suppress(ValueError):
                 out[i, j] = float(number)
     return out
 
@@ -184,7 +215,8 @@ def _heading(text: str, column: int, *, heading: bool) -> tuple[str, str]:
     match = _HEADING.match(text)
     if match is None:
         return text.strip() or f"channel {column + 1}", ""
-    return match["name"].strip() or f"channel {column + 1}", match["unit"].strip()
+    unit = match["square"] or match["round"]
+    return match["name"].strip() or f"channel {column + 1}", unit.strip()
 
 
 def _even_rate(time: Array, path: Path) -> float:
@@ -193,21 +225,21 @@ def _even_rate(time: Array, path: Path) -> float:
         at = int(np.argmin(np.isfinite(time)))
         raise InputError(f"{path}: time stamp {at + 1} is not a number")
     steps = np.diff(time)
-    step = float(np.median(steps))
-    if step <= 0.0:
+    if np.any(steps < 0.0) or time[-1] <= time[0]:
         raise InputError(f"{path}: time does not rise; sort the record")
-    stray = np.flatnonzero(np.abs(steps - step) > max(_UNEVEN, 0.5 * 10.0**-4) * step)
-    wide = stray[np.abs(steps[stray] - step) > 0.5 * step]
-    if len(wide):
-        at = int(wide[0])
-        raise InputError(
-            f"{path}: {len(wide)} gaps in time; the first after {time[at]:.6g} s "
-            f"({steps[at]:.4g} s instead of {step:.4g} s); cut the record there"
-        )
-    mean = (time[-1] - time[0]) / (len(time) - 1)
-    if abs(mean / step - 1.0) > _UNEVEN:
+    step = float((time[-1] - time[0]) / (len(time) - 1))
+    # Stamps are written with so many decimals: they stray by half of the last, and no more.
+    decimals = next((k for k in range(10) if np.allclose(time, np.round(time, k), atol=1e-12)), 10)
+    if np.abs(time - (time[0] + step * np.arange(len(time)))).max() > 10.0**-decimals + 0.01 * step:
+        usual = float(np.median(steps))
+        at = int(np.argmax(steps))
+        if steps[at] > 1.5 * usual + 2.0 * 10.0**-decimals:
+            raise InputError(
+                f"{path}: gaps in time; the widest after {time[at]:.6g} s ({steps[at]:.4g} s "
+                f"instead of {usual:.4g} s); cut the record there"
+            )
         raise InputError(f"{path}: time steps vary from {steps.min():.4g} to {steps.max():.4g} s")
-    return 1.0 / float(mean)
+    return 1.0 / step
 
 
 def _read_wav(path: Path) -> _Raw:
@@ -218,13 +250,20 @@ def _read_wav(path: Path) -> _Raw:
     except ValueError as error:
         raise InputError(f"{path}: is no WAV file ({error})") from None
     data = np.atleast_2d(np.asarray(data).T)
-    if np.issubdtype(data.dtype, np.integer):
+    whole = np.issubdtype(data.dtype, np.integer)
+    if whole:
         offset = 128.0 if data.dtype == np.uint8 else 0.0
         data = (data - offset) / (
             128.0 if data.dtype == np.uint8 else -float(np.iinfo(data.dtype).min)
         )
     names = tuple(f"channel {i + 1}" for i in range(len(data)))
-    return _Raw(samples=data.astype(float), rate=float(rate), names=names, units=("",) * len(data))
+    return _Raw(
+        samples=data.astype(float),
+        rate=float(rate),
+        names=names,
+        units=("",) * len(data),
+        whole=whole,
+    )
 
 
 def _read_uff(path: Path) -> _Raw:

@@ -136,16 +136,22 @@ def _criterion(entry: Mapping[str, Any], points: list[list[Any]], place: str) ->
             quantity=quantity,  # pyright: ignore[reportArgumentType] - checked above
             frequencies=values[:, 0],
             limits=values[:, 1],
-            axis=str(entry.get("axis", "vertical")),
+            axis=str(entry.get("axis", "vertical")).strip().lower(),
             averaging=str(entry.get("averaging", "as the study says")),
             source=str(
                 entry.get("source", f"the user's file {Path(place.partition(':')[0]).name}")
             ),
             confidence=str(entry.get("confidence", "the user's own")),
-            aliases=tuple(map(str, entry.get("aliases", ()))),
+            aliases=_aliases(entry.get("aliases", []), place),
         )
     except InputError as error:
         raise InputError(f"{place}: {error}") from None
+
+
+def _aliases(given: object, place: str) -> tuple[str, ...]:
+    if not isinstance(given, list):
+        raise InputError(f"{place}.aliases: must be a list of names, such as ['maker A']")
+    return tuple(map(str, given))
 
 
 def _value(text: object, dimension: str, place: str) -> float:

@@ -53,6 +53,22 @@ def test_a_rougher_road_has_its_own_map(tmp_path):
     np.testing.assert_allclose(mapped.classes.margin[stepper], 0.001 / peaks, rtol=1e-3)
 
 
+def test_traffic_is_mapped_when_asked_for(tmp_path):
+    """Both trucks at once are louder everywhere than the quieter of them alone."""
+    more = LONG.replace(
+        "[[road]]",
+        '[[route]]\nname = "other"\nvehicle = "truck"\npath = [["12 m", "4 m"], ["0 m", "4 m"]]\n'
+        'speed = "15 km/h"\n\n[[traffic]]\nname = "both"\nroutes = ["main", "other"]\n\n[[road]]',
+        1,
+    )
+    result = run_study(study_of(tmp_path, more + MAP))
+    assert {key.case for key in result.maps} == {"main", "other"}
+    result = run_study(study_of(tmp_path, more + MAP + "traffic = true\n"))
+    levels = {key.case: one.rms_velocity for key, one in result.maps.items()}
+    assert set(levels) == {"main", "other", "both"}
+    assert np.all(levels["both"] > np.minimum(levels["main"], levels["other"]))
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [

@@ -360,6 +360,7 @@ class _Builder:
             criterion=wanted,
             percentile=assessment.percentile,
             averaging=assessment.averaging,
+            traffic=section.traffic,
         )
 
     def _isolations(self) -> dict[str, Isolation]:

@@ -43,7 +43,7 @@ def result_groups(result: StudyResult) -> dict[str, xr.Dataset]:
             groups[f"/contacts/{case.name}/{method.name}"] = _force_dataset(
                 result, case.name, method.name
             )
-        if result.maps:
+        if any(key.case == case.name for key in result.maps):
             groups[f"/maps/{case.name}"] = _map_dataset(result, case.name)
     return groups
 

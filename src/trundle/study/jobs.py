@@ -167,7 +167,7 @@ def _job(
         averaging=study.assessment.averaging if study.assessment else "max_1s",
         quantities=spectra_asked_for(study.assessment.criteria) if study.assessment else (),
         isolations=study.isolations,
-        map=study.map if study.assessment and study.assessment.method == method.name else None,
+        map=_map(study, case, method),
     )
 
 
@@ -177,6 +177,14 @@ class LaidOut:
 
     layout: Layout
     places: PlaceResponses | None
+
+
+def _map(study: Study, case: Case, method: MethodPlan) -> MapPlan | None:
+    """Return what is mapped of a case: by the assessed method, and of traffic if asked for."""
+    plan, assessment = study.map, study.assessment
+    if plan is None or assessment is None or assessment.method != method.name:
+        return None
+    return plan if plan.traffic or len(case.routes) == 1 else None
 
 
 def lay_out_job(job: Job, floor: PreparedFloor) -> LaidOut:

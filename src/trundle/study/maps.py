@@ -40,6 +40,8 @@ class MapPlan:
         Share of runs that levels cover, 0 to 100.
     averaging : {"max_1s", "event"}
         Averaging rule of band levels.
+    traffic : bool
+        Whether several vehicles at once are mapped too; they take as long as all of them.
     """
 
     x: Float[Array, " columns"]
@@ -49,6 +51,7 @@ class MapPlan:
     criterion: str
     percentile: float
     averaging: Averaging
+    traffic: bool
 
     @property
     def places(self) -> Float[Array, "places 2"]:

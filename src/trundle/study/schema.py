@@ -268,6 +268,7 @@ class MapSection(Section):
     spacing: PositiveLength | None = None
     runs: Annotated[Whole, Field(ge=1, le=_MANY)] | None = None
     criterion: str | None = None
+    traffic: Flag = False
 
 
 class PrintedSection(Section):

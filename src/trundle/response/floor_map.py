@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Bool, Complex, Float
-from scipy import fft, ndimage, signal
+from scipy import fft, signal
 
 from trundle._checks import one_of
 from trundle._threads import n_threads
@@ -20,7 +20,7 @@ from trundle.signals import (
     mid_band_frequencies,
     usable_bands,
 )
-from trundle.simulate import PlaceResponses
+from trundle.simulate import PlaceResponses, place_spectra
 
 __all__ = ["FloorMap", "floor_map"]
 
@@ -84,6 +84,7 @@ def floor_map(
     f_max: float,
     averaging: Averaging = "max_1s",
     peaks: bool = True,
+    every_step: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> FloorMap:
     """Map the response to contact forces over a floor.
@@ -100,7 +101,10 @@ def floor_map(
         Averaging rule of the band levels. Either lets the filters ring out behind the record;
         ``event`` divides their energy by its length.
     peaks : bool
-        Whether peak accelerations are wanted; they take as long again.
+        Whether peak accelerations are wanted; they take half as long again.
+    every_step : bool
+        Move the window of the largest 1 s average by time steps instead of 1/20 s: several times
+        slower, and equal to histories.
     progress : callable, optional
         Told the share done.
 
@@ -117,19 +121,20 @@ def floor_map(
     kind = np.float32 if responses.single else np.float64
     levels = np.full((n_runs, n_places, len(mid_band)), np.nan, dtype=kind)
     rms, peak = np.empty((n_runs, n_places)), np.empty((n_runs, n_places))
-    lines = _Lines(responses, mid_band[resolved], averaging)
+    lines = _Lines(responses, mid_band[resolved], averaging, every_step=every_step)
     with ThreadPoolExecutor(n_threads()) as pool:
-        spectra = responses.spectra(forces, acceleration=peaks, progress=progress)
+        spectra = place_spectra(responses, forces, acceleration=peaks, progress=progress)
         for places, runs, velocity, acceleration in spectra:
 
             def reduce(
                 run: int, velocity: Array = velocity, acceleration: Array | None = acceleration
             ) -> tuple[Array, Array, Array]:
-                """Reduce one run; its lines, put together, stay in cache."""
-                more = None if acceleration is None else acceleration[:, :, run].T
-                return lines.reduced(np.ascontiguousarray(velocity[:, :, run].T), more)
+                """Reduce one run; its lines stay in cache."""
+                return lines.reduced(
+                    velocity[run], None if acceleration is None else acceleration[run]
+                )
 
-            found = list(pool.map(reduce, range(velocity.shape[2])))
+            found = list(pool.map(reduce, range(len(velocity))))
             rms[runs, places] = [one[0] for one in found]
             peak[runs, places] = [one[1] for one in found]
             levels[runs, places, resolved] = [one[2] for one in found]
@@ -147,7 +152,9 @@ def floor_map(
 class _Lines:
     """What is made of the spectral lines of one run at some places."""
 
-    def __init__(self, responses: PlaceResponses, mid_band: Array, averaging: Averaging) -> None:
+    def __init__(
+        self, responses: PlaceResponses, mid_band: Array, averaging: Averaging, *, every_step: bool
+    ) -> None:
         self._n, self._n_steps = responses.n_padded, responses.n_steps
         self._averaging = one_of("averaging", averaging, ("event", "max_1s"))
         kind = np.complex64 if responses.single else np.complex128
@@ -165,7 +172,10 @@ class _Lines:
         self._weights = self._weights.astype(kind(0).real.dtype)
         period = self._n / fs
         self._bands = [
-            _band(f, response, period, kind) for f, response in zip(mid_band, filters, strict=True)
+            _whole_band(response, round(fs), kind)
+            if every_step
+            else _band(f, response, period, kind)
+            for f, response in zip(mid_band, filters, strict=True)
         ]
 
     def reduced(
@@ -204,8 +214,22 @@ class _Band:
         else:
             envelope = fft.ifft(_folded(part, self.size), axis=-1, norm="forward")
             square = np.real(envelope) ** 2 + np.imag(envelope) ** 2
-        averages = ndimage.uniform_filter1d(square, self.width, axis=-1, mode="wrap")
-        return np.sqrt(averages.max(axis=-1))
+        return np.sqrt(_window_sums(square, self.width).max(axis=-1) / self.width)
+
+
+def _window_sums(samples: Array, width: int) -> Array:
+    """Return the sums over so many samples from each on, round the period, by doubling."""
+    n_rows, n = samples.shape
+    # as one row, whose last windows of every period are left out
+    sums = np.concatenate([samples, samples[:, :width]], axis=1).reshape(-1)
+    total, found, done, length = sums.size, np.zeros(sums.size, sums.dtype), 0, 1
+    while done < width:
+        if width & length:
+            found[: total - done - length + 1] += sums[done:]
+            done += length
+        sums = sums[:-length] + sums[length:]
+        length *= 2
+    return found.reshape(n_rows, n + width)[:, :n]
 
 
 def _folded(part: Array, size: int) -> Array:
@@ -225,10 +249,16 @@ def _band(f: float, response: Array, period: float, kind: type[np.complexfloatin
     real = bool(f < _SLOW)
     # a square has twice the frequencies of the signal
     least = (4.0 * _EDGE if real else _WIDTH) * f
-    width = fft.next_fast_len(int(np.ceil(max(_LEAST_RATE, least))))
-    size = 2 * round(0.5 * width * period)
+    width = fft.next_fast_len(int(np.ceil(max(_LEAST_RATE, least))), real=real)
+    size = round(width * period)
     scale = (1.0 if real else np.sqrt(2.0)) / (2.0 * (n_lines - 1))
     if real:
         lines = slice(lines.start, min(lines.stop, size // 2))
     scaled = (scale * response[lines]).astype(kind)
     return _Band(lines=lines, response=scaled, size=size, width=width, real=real)
+
+
+def _whole_band(response: Array, fs: int, kind: type[np.complexfloating]) -> _Band:
+    n = 2 * (len(response) - 1)
+    scaled = (response / n).astype(kind)
+    return _Band(lines=slice(0, len(response)), response=scaled, size=n, width=fs, real=True)

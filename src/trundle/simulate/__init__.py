@@ -18,6 +18,7 @@ from trundle.simulate.harmonics import (
     place_waves,
 )
 from trundle.simulate.layout import Layout, lay_out
+from trundle.simulate.place_spectra import place_spectra
 from trundle.simulate.places import PlaceResponses, lay_out_places
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import MeanResponse, Runs
@@ -50,6 +51,7 @@ __all__ = [
     "lay_out",
     "lay_out_places",
     "mean_response",
+    "place_spectra",
     "place_waves",
     "prepare",
     "runs_with_mean",

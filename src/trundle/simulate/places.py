@@ -9,17 +9,12 @@ is lost against stepping, and nothing is stored for a place but what is made of 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Complex, Float
+from jaxtyping import Float
 from scipy import fft, sparse
-from threadpoolctl import ThreadpoolController
 
-from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import ModalRecursion
 from trundle.errors import InputError
@@ -33,13 +28,6 @@ __all__ = ["PlaceResponses", "lay_out_places"]
 
 _NOUGHT = 1e-12  # of the largest weight: of a wheel on a mesh line, half the nodes are round-off
 _RINGING = 8.0  # s behind the record, for the floor and for low bands to come to rest
-_PLACES = 128  # answered for at once
-_LINES = 12  # whose responses are formed at once: they stay in cache
-_LOAD_BYTES = 150e6  # loads on the route's dofs held in time at once
-_SPECTRUM_BYTES = 1.2e9  # their spectra held at once
-_ANSWER_BYTES = 250e6  # spectra at places held at once
-
-Answer = tuple[slice, slice, Array, Array | None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -83,98 +71,6 @@ class PlaceResponses:
     def frequencies(self) -> Float[Array, " lines"]:
         """Return the frequencies of the spectral lines [Hz]."""
         return np.fft.rfftfreq(self.n_padded, self.dt)
-
-    def spectra(
-        self,
-        forces: Float[Array, "steps contacts runs"],
-        *,
-        acceleration: bool,
-        progress: Callable[[float], None] | None = None,
-    ) -> Iterator[Answer]:
-        """Give spectra of velocity, and of acceleration, some places and runs at a time.
-
-        Parameters
-        ----------
-        forces : ndarray of float, shape (n_steps, n_contacts, n_runs)
-            Contact forces [N], positive when they press on the floor.
-        acceleration : bool
-            Whether spectra of acceleration are wanted too; they cost as much again.
-        progress : callable, optional
-            Told the share done.
-
-        Yields
-        ------
-        places, runs : slice
-            Whose spectra these are.
-        velocity, acceleration : ndarray of complex, shape (n_lines, n_places, n_runs)
-            Discrete Fourier transforms over `n_padded` steps [m/s], [m/s2]; the second None if it
-            is not wanted.
-        """
-        n_runs, n_dofs = forces.shape[2], self.route_shapes.shape[1]
-        size = 8 if self.single else 16
-        n_lines = len(self.frequencies)
-        most = max(1, int(_SPECTRUM_BYTES / (size * n_lines * n_dofs)))
-        at_once = max(1, int(_ANSWER_BYTES / (size * n_lines * _PLACES)))
-        blocks = [
-            (start, slice(place, place + _PLACES))
-            for start in range(0, n_runs, most)
-            for place in range(0, len(self.places), _PLACES)
-        ]
-        spectra, held = np.zeros((0, 0, 0)), -1
-        for done, (start, places) in enumerate(blocks):
-            if held != start:
-                spectra, held = self._load_spectra(forces[:, :, start : start + most]), start
-            response = self._response(places, rate=False)
-            second = self._response(places, rate=True) if acceleration else None
-            for first in range(0, spectra.shape[2], at_once):
-                some = slice(first, min(first + at_once, spectra.shape[2]))
-                runs = slice(start + some.start, start + some.stop)
-                part = spectra[:, :, some]
-                velocity = _multiplied(response, part)
-                yield places, runs, velocity, None if second is None else _multiplied(second, part)
-            if progress is not None:
-                progress((done + 1) / len(blocks))
-
-    def _load_spectra(self, forces: Array) -> Array:
-        """Return spectra of the loads on the route's dofs, (lines, dofs, runs)."""
-        n_steps, _, n_runs = forces.shape
-        n_dofs = self.route_shapes.shape[1]
-        kind = np.complex64 if self.single else np.complex128
-        out = np.empty((len(self.frequencies), n_dofs, n_runs), dtype=kind)
-        step = max(1, int(_LOAD_BYTES / (8 * n_steps * n_dofs)))
-        flat = forces.reshape(-1, n_runs)
-        for first in range(0, n_runs, step):
-            some = slice(first, first + step)
-            load = (self.loads @ flat[:, some]).reshape(n_steps, n_dofs, -1)
-            if self.single:
-                load = load.astype(np.float32)
-            out[:, :, some] = fft.rfft(load, self.n_padded, axis=0, workers=n_threads())
-        return out
-
-    def _response(self, places: slice, *, rate: bool) -> Complex[Array, "lines places dofs"]:
-        """Return velocity, or its rate, at places for unit loads on the route's dofs."""
-        kind = np.float32 if self.single else np.float64
-        read = self.place_shapes[places].astype(kind, copy=False)
-        shapes = self.route_shapes.astype(kind, copy=False)
-        n_dofs = shapes.shape[1]
-        out = np.empty((len(self.frequencies), len(read), n_dofs), dtype=np.result_type(kind, 1j))
-
-        def form(first: int) -> None:
-            part = slice(first, first + _LINES)
-            z = np.exp(2j * np.pi * self.frequencies[part] * self.dt)[:, None]
-            modal = (_modal_acceleration if rate else _modal_velocity)(self.propagator, z)
-            # what follows at once, by the differences that stepping takes of it
-            rest = (z - 2.0 + 1.0 / z) / self.dt**2 if rate else (z - 1.0 / z) / (2.0 * self.dt)
-            for take in (np.real, np.imag):
-                driven = take(modal).astype(kind)[:, :, None] * shapes
-                take(out)[part] = read @ driven  # both are views
-            if self.residual is not None:
-                out[part] += (rest[:, :, None] * self.residual[places]).astype(out.dtype)
-
-        with _one_thread_a_product(), ThreadPoolExecutor(n_threads()) as pool:
-            for _ in pool.map(form, range(0, len(out), _LINES)):
-                pass
-        return out
 
 
 def lay_out_places(
@@ -254,43 +150,3 @@ def _loads(rows: ContactRows, kept: Array, used: Array, n_steps: int) -> sparse.
     column = np.broadcast_to(np.arange(n_rows)[:, None], (n_rows, width))
     shape = (n_steps * len(used), n_rows)
     return sparse.csr_array((weights[kept], (at[kept], column[kept])), shape=shape)
-
-
-def _modal_motion(
-    propagator: ModalRecursion, z: Complex[Array, "lines 1"]
-) -> tuple[Complex[Array, "lines modes"], Complex[Array, "lines modes"]]:
-    """Return modal displacement and velocity by modal force: ``(z I - phi)^-1 (g0 + z g1)``."""
-    (p00, p01), (p10, p11) = propagator.phi.transpose(1, 2, 0)
-    force_u, force_v = (propagator.from_start[:, i] + z * propagator.from_end[:, i] for i in (0, 1))
-    determinant = (z - p00) * (z - p11) - p01 * p10
-    u = ((z - p11) * force_u + p01 * force_v) / determinant
-    return u, (p10 * force_u + (z - p00) * force_v) / determinant
-
-
-def _modal_velocity(propagator: ModalRecursion, z: Complex[Array, "lines 1"]) -> Array:
-    return _modal_motion(propagator, z)[1]
-
-
-def _modal_acceleration(propagator: ModalRecursion, z: Complex[Array, "lines 1"]) -> Array:
-    """Return ``p - 2 zeta omega v - omega^2 u`` by modal force."""
-    u, v = _modal_motion(propagator, z)
-    return 1.0 - propagator.double * v - propagator.square * u
-
-
-def _one_thread_a_product() -> AbstractContextManager[object]:
-    """Keep threads of single products from taking the cores of those that run beside them."""
-    return ThreadpoolController().select(internal_api="openblas").limit(limits=1)
-
-
-def _multiplied(response: Array, spectra: Array) -> Array:
-    """Return response @ spectra, line by line, in threads."""
-    out = np.empty((len(response), response.shape[1], spectra.shape[2]), dtype=response.dtype)
-
-    def multiply(first: int) -> None:
-        part = slice(first, first + _LINES)
-        np.matmul(response[part], spectra[part], out=out[part])
-
-    with _one_thread_a_product(), ThreadPoolExecutor(n_threads()) as pool:
-        for _ in pool.map(multiply, range(0, len(response), _LINES)):
-            pass
-    return out

@@ -2,15 +2,20 @@
 
 import csv
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from test_bad_input import GOOD
 
 from trundle.cli.app import main
+from trundle.errors import FitnessWarning, InputError
+from trundle.report.figures_mitigation import strictest
 from trundle.signals import Isolator
+from trundle.simulate.fitness import LOST_CONTACT
 from trundle.study import load_study
-from trundle.study.mitigation import Change, resonance_speeds, try_changes
+from trundle.study.changes import Change, each_change, every_combination
+from trundle.study.mitigation import resonance_speeds, try_changes
 from trundle.study.run import run_study
 from trundle.units import KMH
 from trundle.vehicle import container_truck_40ft
@@ -67,6 +72,82 @@ def test_a_combination_is_what_its_own_study_says(tmp_path):
     assert margins[0] == pytest.approx(outcome(sweep, "as in the study", speeds[0], "C").margin)
 
 
+def test_changes_together_are_what_their_own_study_says(tmp_path):
+    """Slab, damping and isolator in all 8 combinations; the last against a study of all three."""
+    levers = [
+        [Change(label="slab", slab_thickness=0.3)],
+        [Change(label="damping", damping_ratio=0.06)],
+        [Change(label="isolator", isolation=Isolator(frequency=2.0, damping_ratio=0.1))],
+    ]
+    changes = every_combination(levers)
+    assert [change.label for change in changes] == [
+        "as in the study", "isolator", "damping", "damping, isolator",
+        "slab", "slab, isolator", "slab, damping", "slab, damping, isolator",
+    ]  # fmt: skip
+    assert [change.label for change in each_change(levers)] == [
+        "as in the study", "slab", "damping", "isolator",
+    ]  # fmt: skip
+    study = study_of(tmp_path)
+    speeds = (15 * KMH,)
+    sweep = try_changes(study, changes=changes, speeds=speeds, roads=("B",), runs=study.runs)
+    assert [o.change for o in sweep.outcomes] == [change.label for change in changes]
+    text = TEXT.replace('slab_thickness = "0.2 m"', 'slab_thickness = "0.3 m"').replace(
+        '"3 %"', '"6 %"'
+    )
+    for label, own in (
+        ("as in the study", TEXT),
+        ("slab, damping", text),
+        (
+            "slab, damping, isolator",
+            text.replace(
+                "[[point]]", '[[point]]\nisolator = { frequency = "2 Hz", damping = "10 %" }'
+            ),
+        ),
+    ):
+        found = outcome(sweep, label, speeds[0], "B")
+        expected = verdict_of(study_of(tmp_path, own))
+        assert found.margin == pytest.approx(expected.margin, rel=1e-5)
+    margins = [one.verdicts[0].margin for one in sweep.outcomes]
+    assert len(set(np.round(margins, 6))) == len(changes)
+
+
+def test_a_warning_of_every_speed_stands_once(tmp_path):
+    """Modes left out are a doubt at both speeds, a road's end another one at each."""
+    speeds = (12 * KMH, 15 * KMH)
+    sweep = try_changes(
+        study_of(tmp_path), changes=[Change()], speeds=speeds, roads=("A", "B"), runs=2
+    )
+    told = sweep.warnings()
+    assert sum("modal truncation" in text for text in told) == 1
+    assert not any(text.startswith("12") and "modal truncation" in text for text in told)
+    (slow,) = (text for text in told if text.startswith("12 km/h"))
+    assert "at 12 km/h; the road excites nothing" in slow
+    pulling = FitnessWarning(subject=LOST_CONTACT, message="a wheel would pull")
+    lost = [replace(o, warnings=(pulling,)) if o.road == "B" else o for o in sweep.outcomes]
+    told = replace(sweep, outcomes=tuple(lost)).warnings()
+    assert any(text.startswith("class B: loss of contact") for text in told)
+
+
+def test_two_changes_of_one_name_are_refused(tmp_path):
+    changes = [Change(label="slab", slab_thickness=t) for t in (0.2, 0.3)]
+    with pytest.raises(InputError, match="2 changes are called 'slab'"):
+        try_changes(study_of(tmp_path), changes=changes, speeds=(4.0,), roads=("B",), runs=2)
+
+
+def test_a_criterion_met_for_want_of_excitation_has_a_star(tmp_path):
+    """Waves to 2.83 cycle/m end at 11.8 Hz at 15 km/h, below the bands to 25 Hz computed."""
+    study = study_of(tmp_path)
+    sweep = try_changes(study, changes=[Change()], speeds=(15 * KMH,), roads=("A",), runs=2)
+    (one,) = sweep.outcomes
+    (crossing,) = study.crossings(study.cases[0], "B", study.methods[0])
+    assert one.excited_to == pytest.approx(15 * KMH * crossing.band.n_max)
+    assert not one.excites(one.verdicts[0])
+    one = replace(one, verdicts=(replace(one.verdicts[0], status="pass"),))
+    assert strictest(one, "tool").endswith("*")
+    assert replace(one, excited_to=80.0).excites(one.verdicts[0])
+    assert not strictest(replace(one, excited_to=80.0), "tool").endswith("*")
+
+
 def test_resonance_speeds_are_those_of_axles_in_step():
     """f1 = 4 Hz: axles d apart pass every 1/4 s at V = 4 d, every second beat at half of it."""
     truck = container_truck_40ft()
@@ -110,6 +191,7 @@ def test_the_command_writes_matrix_and_margins(tmp_path, monkeypatch, capsys):
         ("--damping", "0 %", "above 0"),
         ("--isolator", "2 Hz", "2 Hz / 10 %"),
         ("--vehicle", "bicycle", "must be one of"),
+        ("--slab", "0.3 m, 300 mm", "slab 300 mm stands there 2 times"),
     ],
 )
 def test_changes_that_cannot_be_are_refused(tmp_path, monkeypatch, capsys, option, value, told):

@@ -167,6 +167,9 @@ def mitigate(
     isolator: Annotated[
         str, typer.Option("--isolator", help="Under every point: '2 Hz / 10 %, 1 Hz / 5 %'.")
     ] = "",
+    combine: Annotated[
+        bool, typer.Option("--combine", help="Combine the changes with each other too.")
+    ] = False,
     runs: Annotated[int, typer.Option("--runs", min=1, max=10_000, help="Runs of each.")] = 60,
     out: Annotated[
         Path | None,
@@ -176,7 +179,8 @@ def mitigate(
     """Try what would help: speed, road class, vehicle, slab, damping, isolator.
 
     Every speed is combined with every road class, for the study as it is and for each change by
-    itself: a matrix of the criteria met, curves of level against speed, and summary.csv.
+    itself, or for changes of all kinds in every combination (--combine): a matrix of the criteria
+    met, curves of level against speed, and summary.csv.
     """
     from trundle.cli import mitigate_command
 
@@ -188,6 +192,7 @@ def mitigate(
         slabs=slab,
         dampings=damping,
         isolators=isolator,
+        combine=combine,
         runs=runs,
         out=out or Path(f"{study.stem}-mitigation-results"),
     )

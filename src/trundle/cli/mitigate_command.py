@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -9,12 +10,14 @@ from typing import TypeVar
 from trundle._checks import one_of
 from trundle.cli.screen import print_table, progress_bar
 from trundle.errors import InputError
-from trundle.report import mitigation_rows, write_mitigation_report
+from trundle.report import PARTLY, mitigation_rows, write_mitigation_report
 from trundle.road import CLASS_NAMES
 from trundle.signals import Isolator
 from trundle.study.build import load_study
-from trundle.study.mitigation import Change, Sweep, try_changes
+from trundle.study.changes import Change, each_change, every_combination
+from trundle.study.mitigation import try_changes
 from trundle.study.store import check_target, mark_results, new_results_folder
+from trundle.study.sweep import Sweep
 from trundle.units import KMH, to_si
 from trundle.vehicle import VEHICLES
 
@@ -32,19 +35,22 @@ def mitigate(
     slabs: str,
     dampings: str,
     isolators: str,
+    combine: bool,
     runs: int,
     out: Path,
 ) -> None:
     """Run every combination, print matrices and write a results folder."""
     study = load_study(path)
     check_target(out)
-    at = sorted(_each("--speeds", speeds, lambda text: to_si(text, "speed")))
+    at = sorted(set(_each("--speeds", speeds, lambda text: to_si(text, "speed"))))
     if not at or at[0] <= 0.0:
         raise InputError(f"--speeds {speeds!r}: give speeds above 0, such as '5 km/h, 15 km/h'")
-    classes = _each("--roads", roads, lambda text: one_of("--roads", text, CLASS_NAMES))
+    letters = _each("--roads", roads, lambda text: one_of("--roads", text, CLASS_NAMES))
+    classes = list(dict.fromkeys(letters))
     if not classes:
         raise InputError(f"--roads {roads!r}: give road classes, such as 'A, B'")
-    changes = _changes(vehicles, slabs, dampings, isolators)
+    levers = _levers(vehicles, slabs, dampings, isolators)
+    changes = every_combination(levers) if combine else each_change(levers)
     with progress_bar() as tell, new_results_folder(out) as folder:
         sweep = try_changes(
             study, changes=changes, speeds=at, roads=classes, runs=runs, report=tell
@@ -57,24 +63,45 @@ def mitigate(
     print(f"\nreport: {out.resolve() / 'report.html'}")
 
 
-def _changes(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[Change]:
-    """Return the study as it is, and each change to it by itself."""
-    found = [Change()]
+def _levers(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[list[Change]]:
+    """Return the changes of each kind together."""
     names = _each("--vehicle", vehicles, lambda text: one_of("--vehicle", text, VEHICLES))
-    found += [Change(label=name.replace("_", " "), vehicle=VEHICLES[name]()) for name in names]
-    for slab in _each("--slab", slabs, lambda text: to_si(text, "length")):
-        if not 0.02 <= slab <= 3.0:
-            raise InputError(f"--slab: a slab is 20 mm to 3 m thick; got {slab:g} m")
-        found.append(Change(label=f"slab {1e3 * slab:g} mm", slab_thickness=slab))
-    for ratio in _each("--damping", dampings, lambda text: to_si(text, "ratio")):
-        if not 0.0 < ratio < 1.0:
-            raise InputError(f"--damping: a ratio is above 0 and below 1; got {ratio:g}")
-        found.append(Change(label=f"damping {100 * ratio:g} %", damping_ratio=ratio))
-    found += [
-        Change(label=str(isolator), isolation=isolator)
-        for isolator in _each("--isolator", isolators, _isolator)
+    levers = [
+        [Change(label=name.replace("_", " "), vehicle=VEHICLES[name]()) for name in names],
+        [
+            Change(label=f"slab {1e3 * slab:g} mm", slab_thickness=slab)
+            for slab in _each("--slab", slabs, _slab)
+        ],
+        [
+            Change(label=f"damping {100 * ratio:g} %", damping_ratio=ratio)
+            for ratio in _each("--damping", dampings, _damping)
+        ],
+        [
+            Change(label=str(isolator), isolation=isolator)
+            for isolator in _each("--isolator", isolators, _isolator)
+        ],
     ]
-    return found
+    for option, lever in zip(
+        ("--vehicle", "--slab", "--damping", "--isolator"), levers, strict=True
+    ):
+        for label, times in Counter(change.label for change in lever).items():
+            if times > 1:
+                raise InputError(f"{option}: {label} stands there {times} times; once is enough")
+    return levers
+
+
+def _slab(text: str) -> float:
+    slab = to_si(text, "length")
+    if not 0.02 <= slab <= 3.0:
+        raise InputError(f"a slab is 20 mm to 3 m thick; got {slab:g} m")
+    return slab
+
+
+def _damping(text: str) -> float:
+    ratio = to_si(text, "ratio")
+    if not 0.0 < ratio < 1.0:
+        raise InputError(f"a ratio is above 0 and below 1; got {ratio:g}")
+    return ratio
 
 
 def _isolator(text: str) -> Isolator:
@@ -122,3 +149,5 @@ def _print(sweep: Sweep) -> None:
                     for speed in sweep.speeds
                 ),
             )
+    if any(title.endswith("*") for title in found.values()):
+        print(PARTLY)

@@ -1,6 +1,6 @@
 """Draw figures and write the report of a study."""
 
-from trundle.report.mitigation_page import mitigation_rows, write_mitigation_report
+from trundle.report.mitigation_page import PARTLY, mitigation_rows, write_mitigation_report
 from trundle.report.page import write_report
 from trundle.report.record_page import record_rows, write_record_report
 from trundle.report.tables import (
@@ -12,6 +12,7 @@ from trundle.report.tables import (
 )
 
 __all__ = [
+    "PARTLY",
     "bound_rows",
     "comparison_rows",
     "exact_rows",

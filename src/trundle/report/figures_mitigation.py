@@ -2,94 +2,143 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import product
+from textwrap import fill
+
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from trundle.criteria import Verdict
 from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
-from trundle.study.mitigation import Outcome, Sweep
+from trundle.study.sweep import Outcome, Sweep
 from trundle.units import KMH
 
-__all__ = ["class_matrix_figure", "speed_figure", "strictest"]
+__all__ = ["NONE", "class_matrix_figure", "speed_figure", "strictest"]
+
+NONE = "none"
+"""What stands where no criterion is met."""
+
+_FEW = 4  # changes, that have a panel each in a matrix and a line each in curves
+_STYLES = ("-", "--", ":", "-.")
 
 
-def strictest(verdicts: tuple[Verdict, ...], point: str) -> str:
-    """Return the title of the strictest velocity criterion that is passed at a point, or none."""
+def strictest(outcome: Outcome, point: str) -> str:
+    """Return the title of the strictest velocity criterion that is passed at a point, or none.
+
+    With a star if the road's waves end below the highest band that it was assessed in.
+    """
     passed = [
         v
-        for v in verdicts
+        for v in outcome.verdicts
         if v.point == point and v.status == "pass" and v.criterion.quantity == "band_rms_velocity"
     ]
     best = min(passed, key=lambda v: float(v.criterion.limits.min()), default=None)
-    return "none" if best is None else best.criterion.title
+    if best is None:
+        return NONE
+    return best.criterion.title if outcome.excites(best) else f"{best.criterion.title}*"
 
 
 def class_matrix_figure(sweep: Sweep, point: str) -> Figure:
-    """Draw the strictest criterion met for every change and case, speed against road class."""
-    names = _names(sweep)
-    colours = ListedColormap(colormaps["cividis"](np.linspace(0.0, 1.0, len(names))))
-    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
+    """Draw the strictest criterion met at a point.
+
+    Few changes have a panel each, speed against road class; many are rows of a panel of one case
+    and road class, against speed.
+    """
     cases = [case.name for case in sweep.study.cases]
-    found = {(o.change, o.case, o.speed, o.road): o for o in sweep.outcomes}
+    found = {(o.change, o.case, o.speed, o.road): strictest(o, point) for o in sweep.outcomes}
+    speeds = [f"{v / KMH:.3g}" for v in sweep.speeds]
+    names = _names(sweep)
+    if len(sweep.changes) <= _FEW:
+        figure, axes = new_figure(
+            1.2 + 1.9 * len(cases),
+            1.2 + (0.55 + 0.30 * len(sweep.speeds)) * len(sweep.changes),
+            rows=len(sweep.changes), columns=len(cases), share="xy",
+        )  # fmt: skip
+        for panel, (change, case) in zip(axes, product(sweep.changes, cases), strict=True):
+            rows = [[found[change, case, v, road] for road in sweep.roads] for v in sweep.speeds]
+            _matrix(panel, rows, names, (speeds, sweep.roads))
+            panel.set_title(case if len(sweep.changes) == 1 else f"{case}\n{change}", fontsize=8)
+        _label(axes, len(cases), "road class", "speed [km/h]")
+        return figure
     figure, axes = new_figure(
-        1.2 + 1.9 * len(cases),
-        1.2 + (0.55 + 0.30 * len(sweep.speeds)) * len(sweep.changes),
-        rows=len(sweep.changes),
-        columns=len(cases),
-        share="xy",
-    )
-    pairs = [(change, case) for change in sweep.changes for case in cases]
-    for number, (panel, (change, case)) in enumerate(zip(axes, pairs, strict=True)):
-        titles = [
-            [strictest(found[change, case, speed, road].verdicts, point) for road in sweep.roads]
-            for speed in sweep.speeds
-        ]
-        ranks = np.array([[names.index(title) for title in row] for row in titles])
-        panel.imshow(ranks, cmap=colours, norm=norm, aspect="auto", origin="lower")
-        for i, row in enumerate(titles):
-            for j, title in enumerate(row):
-                ink = "white" if ranks[i, j] < 0.6 * len(names) else "black"
-                panel.text(j, i, _short(title), ha="center", va="center", fontsize=6.5, color=ink)
-        panel.grid(visible=False)
-        panel.set_xticks(range(len(sweep.roads)), sweep.roads)
-        panel.set_yticks(range(len(sweep.speeds)), [f"{v / KMH:.3g}" for v in sweep.speeds])
-        title = case if number < len(cases) and len(sweep.changes) == 1 else f"{case}\n{change}"
-        panel.set_title(title, fontsize=8)
-        panel.set(xlabel="road class" if number >= len(pairs) - len(cases) else "")
-        panel.set(ylabel="speed [km/h]" if number % len(cases) == 0 else "")
+        2.6 + 0.5 * len(sweep.speeds) * len(sweep.roads),
+        1.0 + (0.5 + 0.22 * len(sweep.changes)) * len(cases),
+        rows=len(cases), columns=len(sweep.roads), share="xy",
+    )  # fmt: skip
+    for panel, (case, road) in zip(axes, product(cases, sweep.roads), strict=True):
+        rows = [[found[change, case, v, road] for v in sweep.speeds] for change in sweep.changes]
+        _matrix(panel, rows, names, (sweep.changes, speeds))
+        panel.set_title(f"{case}, class {road}", fontsize=8)
+    axes[0].invert_yaxis()  # all panels share it
+    _label(axes, len(sweep.roads), "speed [km/h]", "")
     return figure
 
 
+def _matrix(
+    panel: Axes,
+    rows: list[list[str]],
+    names: list[str],
+    ticks: tuple[Sequence[str], Sequence[str]],
+) -> None:
+    """Draw criteria met as colours with their names; ticks are those of rows and columns."""
+    colours = ListedColormap(colormaps["cividis"](np.linspace(0.0, 1.0, len(names))))
+    norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
+    ranks = np.array([[names.index(title.rstrip("*")) for title in row] for row in rows])
+    panel.imshow(ranks, cmap=colours, norm=norm, aspect="auto", origin="lower")
+    for (i, j), rank in np.ndenumerate(ranks):
+        ink = "white" if rank < 0.5 * len(names) else "black"
+        panel.text(j, i, _short(rows[i][j]), ha="center", va="center", fontsize=6.5, color=ink)
+    panel.grid(visible=False)
+    panel.set_yticks(range(len(ticks[0])), ticks[0])
+    panel.set_xticks(range(len(ticks[1])), ticks[1])
+    panel.tick_params(labelsize=7)
+
+
+def _label(axes: list[Axes], columns: int, x: str, y: str) -> None:
+    """Name the axes at the figure's left and lower edge alone."""
+    for i, panel in enumerate(axes):
+        panel.set(xlabel=x if i >= len(axes) - columns else "", ylabel="" if i % columns else y)
+
+
 def speed_figure(sweep: Sweep, point: str, criterion: str) -> Figure:
-    """Draw level over limit against speed, a panel a case; marks where axles pass in resonance."""
-    cases = [case.name for case in sweep.study.cases]
-    columns = min(2, len(cases))
-    rows = -(-len(cases) // columns)
-    figure, axes = new_figure(8.4, 0.9 + 2.5 * rows, rows=rows, columns=columns, share="xy")
-    styles = ("-", "--", ":", "-.")
-    for panel, case in zip(axes, cases, strict=False):
-        for k, change in enumerate(sweep.changes):
+    """Draw level over limit against speed; marks where axles pass in resonance.
+
+    A panel a case with a line for every change, or, of many changes, a panel a change with a line
+    for every case.
+    """
+    cases, changes = [case.name for case in sweep.study.cases], sweep.changes
+    by_case = len(changes) <= _FEW
+    panels, lines = (cases, changes) if by_case else (changes, cases)
+    columns = min(2 if by_case else 3, len(panels))
+    rows = -(-len(panels) // columns)
+    figure, axes = new_figure(8.4, 0.9 + 2.3 * rows, rows=rows, columns=columns, share="xy")
+    for panel, name in zip(axes, panels, strict=False):
+        marked: set[float] = set()
+        for k, line in enumerate(lines):
+            change, case = (line, name) if by_case else (name, line)
+            marked |= set(sweep.resonances[change, case])
             for j, road in enumerate(sweep.roads):
-                level = 1.0 / sweep.margin(change, case, road, point, criterion)
                 panel.plot(
                     np.array(sweep.speeds) / KMH,
-                    level,
+                    1.0 / sweep.margin(change, case, road, point, criterion),
                     color=COLOURS[j % len(COLOURS)],
-                    linestyle=styles[k % len(styles)],
+                    linestyle=_STYLES[k % len(_STYLES)],
                     marker="o",
                     markersize=3,
                 )
-        for speed in sweep.resonances[sweep.changes[0]]:
+        for speed in marked:
             panel.axvline(speed / KMH, color=COLOURS[7], linewidth=0.8, linestyle=":")
         panel.axhline(1.0, color="black", linewidth=1.0)
         make_logarithmic(panel, "y")
-        panel.set_title(case, fontsize=9)
+        panel.set_title(name if by_case else fill(name, 40), fontsize=9 if by_case else 7)
     for i, panel in enumerate(axes):
-        panel.set_visible(i < len(cases))
-        panel.set(xlabel="speed [km/h]" if i + columns >= len(cases) else "")
+        panel.set_visible(i < len(panels))
+        panel.set(xlabel="speed [km/h]" if i + columns >= len(panels) else "")
+        panel.tick_params(labelbottom=i + columns >= len(panels))
         panel.set(ylabel=f"level / {criterion}" if i % columns == 0 else "")
     handles = [
         Line2D(
@@ -98,8 +147,8 @@ def speed_figure(sweep: Sweep, point: str, criterion: str) -> Figure:
         for j, r in enumerate(sweep.roads)
     ]
     handles += [
-        Line2D([], [], color="black", linestyle=styles[k % len(styles)], label=change)
-        for k, change in enumerate(sweep.changes)
+        Line2D([], [], color="black", linestyle=_STYLES[k % len(_STYLES)], label=line)
+        for k, line in enumerate(lines)
     ]
     figure.legend(handles=handles, loc="outside lower center", ncols=4)
     return figure
@@ -107,7 +156,9 @@ def speed_figure(sweep: Sweep, point: str, criterion: str) -> Figure:
 
 def _short(title: str) -> str:
     """Return a title that a cell holds."""
-    return title if len(title) <= 8 else f"{title[:7].rstrip()}."
+    plain = title.rstrip("*")
+    star = title[len(plain) :]
+    return title if len(plain) <= 8 else f"{plain[:7].rstrip()}.{star}"
 
 
 def _names(sweep: Sweep) -> list[str]:
@@ -118,4 +169,4 @@ def _names(sweep: Sweep) -> list[str]:
         for v in first.verdicts
         if v.criterion.quantity == "band_rms_velocity"
     }
-    return ["none", *sorted(curves, key=lambda title: -curves[title])]  # widest first
+    return [NONE, *sorted(curves, key=lambda title: -curves[title])]  # widest first

@@ -12,10 +12,16 @@ from trundle import __version__
 from trundle.report.canvas import STYLE, Picture, save
 from trundle.report.figures_mitigation import class_matrix_figure, speed_figure, strictest
 from trundle.report.html import embedded, template
-from trundle.study.mitigation import Sweep
+from trundle.study.sweep import Sweep
 from trundle.units import KMH
 
-__all__ = ["mitigation_rows", "write_mitigation_report"]
+__all__ = ["PARTLY", "mitigation_rows", "write_mitigation_report"]
+
+PARTLY = (
+    "* the waves of the road end below the highest bands of the criterion, which is met there for "
+    "want of excitation"
+)
+"""What the star behind a criterion says."""
 
 
 def mitigation_rows(sweep: Sweep) -> list[dict[str, Any]]:
@@ -27,7 +33,7 @@ def mitigation_rows(sweep: Sweep) -> list[dict[str, Any]]:
             "speed_kmh": one.speed / KMH,
             "road": one.road,
             "point": point,
-            "strictest": strictest(one.verdicts, point),
+            "strictest": strictest(one, point),
         }
         for one in sweep.outcomes
         for point in sweep.study.points
@@ -46,7 +52,7 @@ def write_mitigation_report(sweep: Sweep, folder: Path) -> Path:
                 Picture(
                     name=f"matrix_{i + 1}",
                     title=f"Strictest criterion met, {point}",
-                    caption="By speed and road class, for every change and case.",
+                    caption=f"By speed and road class, for every change and case. {PARTLY}.",
                 ),
                 lambda point=point: class_matrix_figure(sweep, point),
             )
@@ -71,16 +77,21 @@ def write_mitigation_report(sweep: Sweep, folder: Path) -> Path:
     with (folder / "summary.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         heads = ("change", "case", "speed_kmh", "road", "point", "criterion", "verdict", "margin")
-        writer.writerow([*heads, "governing_band_hz", "share_exceeding"])
+        writer.writerow([*heads, "governing_band_hz", "share_exceeding", "excited_to_hz"])
         for one in sweep.outcomes:
             for v in one.verdicts:
                 key = [one.change, one.case, f"{one.speed / KMH:g}", one.road, v.point]
-                values = [f"{x:.6g}" for x in (v.margin, v.governing_band, v.share_exceeding)]
+                known = (v.margin, v.governing_band, v.share_exceeding, one.excited_to)
+                values = [f"{x:.6g}" for x in known]
                 writer.writerow([*key, v.criterion.name, v.status, *values])
     page = folder / "report.html"
     page.write_text(
         template("mitigation.html.j2").render(
-            sweep=sweep, rows=mitigation_rows(sweep), pictures=pictures, version=__version__
+            sweep=sweep,
+            rows=mitigation_rows(sweep),
+            partly=PARTLY,
+            pictures=pictures,
+            version=__version__,
         ),
         encoding="utf-8",
     )

@@ -2,132 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import itertools
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from trundle.criteria import Verdict, assess_reduced, spectra_asked_for
-from trundle.dynamics import ModalRatio, Modes
-from trundle.errors import FitnessWarning, InputError
+from trundle.criteria import assess_reduced, spectra_asked_for
+from trundle.dynamics import Modes
+from trundle.errors import InputError
 from trundle.response import behind_isolators, reduce_rougher
 from trundle.road import RoadClass
-from trundle.route import ConstantSpeed
-from trundle.signals import Isolation
-from trundle.simulate import PreparedFloor, StaticFlexibility, lay_out, prepare, runs_with_mean
+from trundle.simulate import (
+    MeanResponse,
+    PreparedFloor,
+    Runs,
+    StaticFlexibility,
+    lay_out,
+    prepare,
+    runs_with_mean,
+)
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
-from trundle.structure import build_floor
+from trundle.study.changes import Change, changed_study
 from trundle.study.mode_cache import modes_of
-from trundle.study.model import Case, MethodPlan, Study
+from trundle.study.model import Assessment, Case, MethodPlan, Study
+from trundle.study.sweep import Outcome, Sweep
 from trundle.vehicle import Vehicle
 
-__all__ = ["Change", "Outcome", "Sweep", "resonance_speeds", "try_changes"]
+__all__ = ["resonance_speeds", "try_changes"]
 
 _TAIL = 5.0  # s of record after the last wheel has left
 _ORDERS = (1, 2, 3)  # multiples of the axle passing frequency that are marked
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Change:
-    """Hold one change to a study; what is None stays as it is.
-
-    Attributes
-    ----------
-    label : str
-        What it is, for tables.
-    vehicle : Vehicle or None
-        Drives every route instead.
-    slab_thickness : float or None
-        Thickness of the slab [m].
-    damping_ratio : float or None
-        Damping ratio of every mode.
-    isolation : Isolator, TransmissibilityTable or None
-        Stands at every point.
-    """
-
-    label: str = "as in the study"
-    vehicle: Vehicle | None = None
-    slab_thickness: float | None = None
-    damping_ratio: float | None = None
-    isolation: Isolation | None = None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Outcome:
-    """Hold the verdicts of one combination.
-
-    Attributes
-    ----------
-    change : str
-        Label of the change.
-    case : str
-        What drives.
-    speed : float
-        Speed of every vehicle [m/s].
-    road : str
-        Road class.
-    verdicts : tuple of Verdict
-        By point, then by criterion.
-    warnings : tuple of FitnessWarning
-        Doubts about it.
-    """
-
-    change: str
-    case: str
-    speed: float
-    road: str
-    verdicts: tuple[Verdict, ...]
-    warnings: tuple[FitnessWarning, ...]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Sweep:
-    """Hold all combinations that were tried.
-
-    Attributes
-    ----------
-    study : Study
-        What was changed.
-    changes, speeds, roads : tuple
-        What was combined: labels, speeds [m/s], road classes.
-    runs : int
-        Runs of each combination.
-    outcomes : tuple of Outcome
-        One for each combination.
-    resonances : mapping of str to tuple of float
-        Speeds [m/s] at which axles of a change's vehicle pass at its floor's first frequency, or
-        a half or a third of it.
-    """
-
-    study: Study
-    changes: tuple[str, ...]
-    speeds: tuple[float, ...]
-    roads: tuple[str, ...]
-    runs: int
-    outcomes: tuple[Outcome, ...]
-    resonances: Mapping[str, tuple[float, ...]]
-
-    def warnings(self) -> tuple[str, ...]:
-        """Return every doubt once, with the speed and the road that it is about."""
-        found: dict[str, None] = {}
-        for one in self.outcomes:
-            road = f", class {one.road}"
-            for warning in one.warnings:
-                place = road if warning.subject == LOST_CONTACT else ""
-                found[f"{3.6 * one.speed:.3g} km/h{place}: {warning}"] = None
-        return tuple(found)
-
-    def margin(self, change: str, case: str, road: str, point: str, criterion: str) -> np.ndarray:
-        """Return the margin to a criterion at every speed, (n_speeds,)."""
-        found = {
-            o.speed: v.margin
-            for o in self.outcomes
-            if (o.change, o.case, o.road) == (change, case, road)
-            for v in o.verdicts
-            if (v.point, v.criterion.name) == (point, criterion)
-        }
-        return np.array([found[speed] for speed in self.speeds])
 
 
 def try_changes(
@@ -146,7 +53,8 @@ def try_changes(
     study : Study
         A study with criteria; its assessed method is used.
     changes : sequence of Change
-        Other vehicles, slabs, dampings, isolators.
+        Other vehicles, slabs, dampings, isolators, see `each_change` and `every_combination`.
+        Those that differ by their isolators alone share their runs.
     speeds : sequence of float
         Speeds of every vehicle [m/s].
     roads : sequence of str
@@ -158,53 +66,53 @@ def try_changes(
     """
     if study.assessment is None:
         raise InputError(f"{study.source}: has no [criteria] to hold changes against; add them")
+    for label, times in Counter(change.label for change in changes).items():
+        if times > 1:
+            raise InputError(f"{times} changes are called {label!r}; give each a name of its own")
     tell = report or (lambda _what, _share: None)
-    total, done = len(changes) * len(speeds) * len(study.cases), 0
-    outcomes: list[Outcome] = []
-    resonances: dict[str, tuple[float, ...]] = {}
+    alike = _sharing_runs(changes)
+    total, done = len(alike) * len(speeds) * len(study.cases), 0
+    found: dict[tuple[str, float, str], list[Outcome]] = {}
+    resonances: dict[tuple[str, str], tuple[float, ...]] = {}
+    slab: _Slab | None = None
     with threadpool_limits(limits=1, user_api="blas"):
-        for change in changes:
-            changed, method = _changed(study, change)
-            tell(f"{change.label}: modes of the floor", done / total)
-            modes = _modes(changed, method)
-            prepared = prepare(
-                changed.floor,
-                method.interaction.integration,
-                method.interaction.damping,
-                modes=modes,
-                flexibility=StaticFlexibility(changed.floor),
-            )
-            vehicle = next(iter(changed.drives.values())).vehicle
-            f1 = float(modes.frequencies[0]) if modes is not None else 0.0
-            resonances[change.label] = resonance_speeds(vehicle, f1, speeds)
-            for speed in speeds:
-                at_speed = _at_speed(changed, speed)
-                for case in study.cases:
-                    tell(f"{change.label}: {case.name} at {3.6 * speed:.3g} km/h", done / total)
-                    outcomes += [
-                        Outcome(
-                            change=change.label,
-                            case=case.name,
-                            speed=speed,
-                            road=road,
-                            verdicts=verdicts,
-                            warnings=warnings,
-                        )
-                        for road, verdicts, warnings in _verdicts(
-                            at_speed, case, method, prepared, roads=roads, runs=runs
-                        )
-                    ]
-                    done += 1
+        for together in alike:
+            first = together[0]
+            tell(f"{first.label}: modes of the floor", done / total)
+            if slab is None or slab.thickness != first.slab_thickness:
+                slab = _slab(study, first.slab_thickness)
+            tried = _tried(slab, first, roads)
+            for case in study.cases:
+                marked = _resonances(tried, case, speeds)
+                resonances |= {(change.label, case.name): marked for change in together}
+            for speed, case in itertools.product(speeds, study.cases):
+                tell(f"{first.label}: {case.name} at {3.6 * speed:.3g} km/h", done / total)
+                passages = _passages(tried, case, speed, runs)
+                for change in together:
+                    outcomes = _outcomes(tried, passages, change, case, speed)
+                    found[change.label, speed, case.name] = outcomes
+                done += 1
     tell("done", 1.0)
+    labels, names = [change.label for change in changes], [case.name for case in study.cases]
+    ordered = (found[key] for key in itertools.product(labels, speeds, names))
     return Sweep(
         study=study,
-        changes=tuple(change.label for change in changes),
+        changes=tuple(labels),
         speeds=tuple(speeds),
         roads=tuple(roads),
         runs=runs,
-        outcomes=tuple(outcomes),
+        outcomes=tuple(itertools.chain.from_iterable(ordered)),
         resonances=resonances,
     )
+
+
+def _sharing_runs(changes: Sequence[Change]) -> list[list[Change]]:
+    """Return changes that differ by their isolators alone together, those of one slab in a row."""
+    groups: dict[tuple[float, float, int], list[Change]] = {}
+    for change in changes:
+        key = (change.slab_thickness or 0.0, change.damping_ratio or 0.0, id(change.vehicle))
+        groups.setdefault(key, []).append(change)
+    return sorted(groups.values(), key=lambda group: group[0].slab_thickness or 0.0)
 
 
 def resonance_speeds(vehicle: Vehicle, f1: float, speeds: Sequence[float]) -> tuple[float, ...]:
@@ -226,81 +134,127 @@ def resonance_speeds(vehicle: Vehicle, f1: float, speeds: Sequence[float]) -> tu
     return tuple(sorted({float(v) for v in found if min(speeds) <= v <= max(speeds)}))
 
 
-def _changed(study: Study, change: Change) -> tuple[Study, MethodPlan]:
-    """Return the study with a change, and its assessed method with it."""
-    assert study.assessment is not None  # the caller has looked
-    name = study.assessment.method
-    method = next(method for method in study.methods if method.name == name)
-    if change.damping_ratio is not None:
-        damped = replace(method.interaction, damping=ModalRatio(ratio=change.damping_ratio))
-        method = replace(method, interaction=damped)
-    if change.slab_thickness is not None:
-        slab = replace(study.plan.slab, thickness=change.slab_thickness)
-        plan = replace(study.plan, slab=slab)
-        study = replace(study, plan=plan, floor=build_floor(plan, mesh_size=study.mesh_size))
-    if change.vehicle is not None:
-        drives = {n: replace(d, vehicle=change.vehicle) for n, d in study.drives.items()}
-        study = replace(study, drives=drives)
-    if change.isolation is not None:
-        study = replace(study, isolations=dict.fromkeys(study.points, change.isolation))
-    return study, method
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Slab:
+    """The study with a slab of some thickness, and what is known of its floor."""
+
+    thickness: float | None
+    study: Study
+    modes: Modes | None
+    flexibility: StaticFlexibility
 
 
-def _at_speed(study: Study, speed: float) -> Study:
-    drives = {
-        name: replace(drive, route=replace(drive.route, law=ConstantSpeed(speed)))
-        for name, drive in study.drives.items()
-    }
-    return replace(study, drives=drives)
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Tried:
+    """The study as changed, but for isolators, on the first of the roads."""
+
+    study: Study
+    method: MethodPlan
+    assessment: Assessment
+    prepared: PreparedFloor
+    classes: tuple[RoadClass, ...]
 
 
-def _modes(study: Study, method: MethodPlan) -> Modes | None:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Passages:
+    """The runs of one case at one speed on the first road, and their mean."""
+
+    runs: Runs
+    mean: MeanResponse
+    excited_to: float
+
+
+def _slab(study: Study, thickness: float | None) -> _Slab:
+    changed = changed_study(study, Change(slab_thickness=thickness))
+    method = _assessed(changed)[1]
     f_max = getattr(method.interaction.integration, "f_max", None)
-    return None if f_max is None else modes_of(study.floor, f_max=f_max)
+    modes = None if f_max is None else modes_of(changed.floor, f_max=f_max)
+    flexibility = StaticFlexibility(changed.floor)
+    return _Slab(thickness=thickness, study=changed, modes=modes, flexibility=flexibility)
 
 
-def _verdicts(
-    study: Study,
-    case: Case,
-    method: MethodPlan,
-    prepared: PreparedFloor,
-    *,
-    roads: Sequence[str],
-    runs: int,
-) -> Iterator[tuple[str, tuple[Verdict, ...], tuple[FitnessWarning, ...]]]:
-    """Run one case at one speed; roads differ by a factor alone."""
+def _tried(slab: _Slab, change: Change, roads: Sequence[str]) -> _Tried:
+    classes = tuple(RoadClass(name) for name in roads)  # pyright: ignore[reportArgumentType] - checked
+    rest = replace(change, slab_thickness=None, isolation=None)
+    study = replace(changed_study(slab.study, rest), roads={"first": classes[0]})
+    assessment, method = _assessed(study)
+    interaction = method.interaction
+    return _Tried(
+        study=study,
+        method=method,
+        assessment=assessment,
+        prepared=prepare(
+            study.floor,
+            interaction.integration,
+            interaction.damping,
+            modes=slab.modes,
+            flexibility=slab.flexibility,
+        ),
+        classes=classes,
+    )
+
+
+def _assessed(study: Study) -> tuple[Assessment, MethodPlan]:
     assessment = study.assessment
-    assert assessment is not None  # the caller has looked
-    classes = [RoadClass(name) for name in roads]  # pyright: ignore[reportArgumentType] - checked
-    smooth = replace(study, roads={"first": classes[0]})
-    crossings = smooth.crossings(case, "first", method)
-    duration = max(study.duration, max(c.exit_time for c in crossings) + _TAIL)
+    assert assessment is not None  # looked for at the start
+    return assessment, next(m for m in study.methods if m.name == assessment.method)
+
+
+def _resonances(tried: _Tried, case: Case, speeds: Sequence[float]) -> tuple[float, ...]:
+    modes = tried.prepared.modes
+    if modes is None:
+        return ()
+    f1 = float(modes.frequencies[0])
+    vehicles = [tried.study.drives[name].vehicle for name in case.routes]
+    return tuple(sorted({v for one in vehicles for v in resonance_speeds(one, f1, speeds)}))
+
+
+def _passages(tried: _Tried, case: Case, speed: float, runs: int) -> _Passages:
+    """Run one case at one speed; the other roads differ by a factor alone."""
+    study = tried.study.at_speed(speed)
+    crossings = study.crossings(case, "first", tried.method)
     layout = lay_out(
-        prepared,
+        tried.prepared,
         crossings,
-        method=method.interaction,
+        method=tried.method.interaction,
         points=study.points,
-        duration=duration,
+        duration=max(study.duration, max(c.exit_time for c in crossings) + _TAIL),
     )
     found, mean = runs_with_mean(layout, runs=range(runs), seed=study.seed)
-    found = behind_isolators(found, study.isolations)
-    mean = behind_isolators(mean, study.isolations)
-    factors = [float(np.sqrt(c.roughness / classes[0].roughness)) for c in classes]
+    excited_to = min(speed * crossing.band.n_max for crossing in crossings)
+    return _Passages(runs=found, mean=mean, excited_to=excited_to)
+
+
+def _outcomes(
+    tried: _Tried, passages: _Passages, change: Change, case: Case, speed: float
+) -> list[Outcome]:
+    """Hold passages behind the isolators of a change against the criteria, on every road."""
+    study = changed_study(tried.study, Change(isolation=change.isolation))
+    assessment, runs = tried.assessment, passages.runs
+    factors = [float(np.sqrt(c.roughness / tried.classes[0].roughness)) for c in tried.classes]
     reduced = reduce_rougher(
-        found,
-        mean,
+        behind_isolators(runs, study.isolations),
+        behind_isolators(passages.mean, study.isolations),
         factors,
         averaging=assessment.averaging,
         quantities=spectra_asked_for(assessment.criteria),
     )
-    for road, one in zip(roads, reduced, strict=True):
-        verdicts = assess_reduced(
-            one,
-            assessment.criteria,
-            percentile=assessment.percentile,
-            top=min(found.f_max, found.sampling_frequency / 2.5),
-            events=assessment.events,
+    doubts = tuple(w for w in runs.warnings if w.subject != LOST_CONTACT)
+    return [
+        Outcome(
+            change=change.label,
+            case=case.name,
+            speed=speed,
+            road=road.name,
+            verdicts=assess_reduced(
+                one,
+                assessment.criteria,
+                percentile=assessment.percentile,
+                top=min(runs.f_max, runs.sampling_frequency / 2.5),
+                events=assessment.events,
+            ),
+            excited_to=passages.excited_to,
+            warnings=(*contact_warnings(float(one.tension.any(axis=1).mean())), *doubts),
         )
-        pulling = contact_warnings(float(one.tension.any(axis=1).mean()))
-        doubts = tuple(w for w in found.warnings if w.subject != LOST_CONTACT)
-        yield road, verdicts, (*pulling, *doubts)
+        for road, one in zip(tried.classes, reduced, strict=True)
+    ]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trundle.criteria import Criterion
 from trundle.road import RoadClass, RoughnessBand
-from trundle.route import DriveIn, Entry, Ramp, Route, StaticStart
+from trundle.route import ConstantSpeed, DriveIn, Entry, Ramp, Route, StaticStart
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.structure import Floor, FloorPlan
@@ -215,6 +215,14 @@ class Study:
             )
             for drive in (self.drives[name] for name in case.routes)
         )
+
+    def at_speed(self, speed: float) -> Study:
+        """Return the study with every vehicle at a constant speed [m/s]."""
+        drives = {
+            name: replace(drive, route=replace(drive.route, law=ConstantSpeed(speed)))
+            for name, drive in self.drives.items()
+        }
+        return replace(self, drives=drives)
 
     def band_for(self, drive: Drive, method: MethodPlan) -> RoughnessBand:
         """Return the waves that a method's time step can follow at a route's speed."""

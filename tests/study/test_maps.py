@@ -5,9 +5,13 @@ import pytest
 from test_bad_input import GOOD
 
 from trundle.errors import StudyError
+from trundle.report.map_data import map_views
 from trundle.simulate import ensemble
 from trundle.study import load_study
+from trundle.study.map_datasets import map_groups
+from trundle.study.maps import MapKey
 from trundle.study.run import run_study
+from trundle.units import KMH
 
 MAP = '\n[map]\nspacing = "3 m"\ncriterion = "VC-A"\n'
 LONG = GOOD.replace('duration = "4 s"', 'duration = "14 s"').replace('"30 Hz"', '"90 Hz"')
@@ -53,6 +57,46 @@ def test_a_rougher_road_has_its_own_map(tmp_path):
     np.testing.assert_allclose(mapped.classes.margin[stepper], 0.001 / peaks, rtol=1e-3)
 
 
+def test_a_map_at_another_speed_is_that_of_its_own_study(tmp_path):
+    """12 km/h named by the map against a route at 12 km/h; the worst of both holds the larger."""
+    text = LONG + MAP + 'speeds = ["12 km/h"]\n'
+    result = run_study(study_of(tmp_path, text))
+    slow = LONG.replace('"15 km/h"', '"12 km/h"') + MAP
+    (expected,) = run_study(study_of(tmp_path, slow)).maps.values()
+    found = result.maps[MapKey("main", "B", 12 * KMH)]
+    np.testing.assert_allclose(found.rms_velocity, expected.rms_velocity, rtol=1e-5)
+    np.testing.assert_allclose(found.classes.margin, expected.classes.margin, rtol=1e-5)
+    own = result.maps[MapKey("main", "B")]
+    assert np.abs(own.rms_velocity / found.rms_velocity - 1).max() > 0.1
+    groups = map_groups(result)
+    assert set(groups) == {"/maps/main", "/map_speeds/main", "/map_envelope"}
+    there = groups["/map_speeds/main"]["margin"].sel(speed=12 * KMH, road="B", criterion="VC-A")
+    np.testing.assert_allclose(there.values.ravel(), found.classes.margin[0])
+    worst = groups["/map_envelope"]["margin"].sel(criterion="VC-A").values.ravel()
+    np.testing.assert_allclose(worst, np.minimum(own.classes.margin, found.classes.margin)[0])
+    views = map_views(result)
+    assert [(view.title, view.printed) for view in views] == [
+        ("main, class B", True), ("main, class B at 12 km/h", False),
+        ("worst at 12 km/h", True), ("worst of all single routes", True),
+    ]  # fmt: skip
+
+
+def test_every_node_at_every_step_is_what_a_point_there_gives(tmp_path):
+    """The map of all nodes of the mesh; the default rule as exact there as a history."""
+    exact = '\n[map]\nplaces = "nodes"\nevery_step = true\ncriterion = "VC-A"\n'
+    study = study_of(tmp_path, LONG + exact)
+    nodes = study.floor.nodes
+    level = nodes[np.abs(nodes[:, 2]) < 1e-9][:, :2]
+    assert {tuple(p) for p in np.round(study.map.places, 6)} == {
+        tuple(p) for p in np.round(level, 6)
+    }
+    result = run_study(study)
+    (mapped,), ((verdict,),) = result.maps.values(), result.verdicts.values()
+    (at,) = np.flatnonzero(np.abs(study.map.places - [3.0, 3.0]).sum(axis=1) < 1e-9)
+    # single precision, and a record that ends before the lowest bands are at rest
+    assert mapped.classes.margin[0, at] == pytest.approx(verdict.margin, rel=1e-4)
+
+
 def test_traffic_is_mapped_when_asked_for(tmp_path):
     """Both trucks at once are louder everywhere than the quieter of them alone."""
     more = LONG.replace(
@@ -85,6 +129,13 @@ def test_traffic_is_mapped_when_asked_for(tmp_path):
             "modal superposition",
         ),
         (LONG + MAP.replace("spacing", "spacin"), "did you mean 'spacing'"),
+        (LONG + MAP + 'places = "nodes"\n', "nodes of the mesh have a spacing of their own"),
+        (LONG.replace("runs = 2", "runs = 100000") + MAP.replace('"3 m"', '"0.1 m"\nruns = 100000'), "would not fit in memory"),
+        (
+            LONG.replace("[[point]]", '[roughness]\nn_min = "0.05 1/m"\nn_max = "10 1/m"\nn_max_follows_dt = false\n\n[[point]]')
+            + MAP + 'speeds = ["10 km/h", "60 km/h"]\n',
+            "map.speeds\\[2\\]",
+        ),
     ],
 )  # fmt: skip
 def test_maps_that_cannot_be_are_refused(tmp_path, text, told):

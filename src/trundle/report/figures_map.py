@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.colorbar import Colorbar
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
-from matplotlib.image import AxesImage
 from matplotlib.patches import Patch
 from matplotlib.ticker import StrMethodFormatter
 
@@ -67,7 +68,7 @@ def criterion_map_figure(study: Study, views: list[MapView]) -> Figure:
         if np.nanmin(grid) < 1.0 < np.nanmax(grid):
             panel.contour(plan.x, plan.y, grid, levels=[1.0], colors="black", linewidths=1.2)
     if image is not None:
-        bar = figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
+        bar = _bar(figure, image, panels)
         bar.set_label(f"margin to {plan.criterion} = limit / level (below 1 fails; line at 1)")
         bar.set_ticks([0.1, 0.3, 1.0, 3.0, 10.0])
         bar.ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -85,8 +86,7 @@ def share_map_figure(study: Study, views: list[MapView]) -> Figure:
         look = {"cmap": "cividis_r", "vmin": 0.0, "vmax": 100.0}
         image = _image(panel, study, plan, share, view.routes, **look)
     if image is not None:
-        bar = figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
-        bar.set_label(f"runs above {plan.criterion} [%]")
+        _bar(figure, image, panels).set_label(f"runs above {plan.criterion} [%]")
     return figure
 
 
@@ -102,7 +102,7 @@ def rms_map_figure(study: Study, views: list[MapView]) -> Figure:
     for panel, view, level in zip(panels, views, levels, strict=True):
         image = _image(panel, study, plan, level, view.routes, cmap="cividis_r", norm=norm)
     if image is not None:
-        bar = figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
+        bar = _bar(figure, image, panels)
         bar.set_label("record RMS velocity [um/s]")
         ticks = [float(f"{v:.2g}") for v in np.geomspace(low, high, 6)[1:-1]]
         bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
@@ -137,18 +137,22 @@ def _panels(study: Study, views: list[MapView]) -> tuple[Figure, list[Axes]]:
     return figure, panels[: len(views)]
 
 
+def _bar(figure: Figure, image: QuadMesh, panels: list[Axes]) -> Colorbar:
+    return figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
+
+
 def _image(
     panel: Axes, study: Study, plan: MapPlan, values: Array, routes: tuple[str, ...], **look: object
-) -> AxesImage:
-    extent = (*study.plan.x_extent, *study.plan.y_extent)
-    image = panel.imshow(
+) -> QuadMesh:
+    image = panel.pcolormesh(
+        plan.x,
+        plan.y,
         values.reshape(len(plan.y), len(plan.x)),
-        origin="lower",
-        extent=extent,
-        interpolation="nearest",
-        aspect="equal",
+        shading="nearest",
+        rasterized=True,
         **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
     )
+    panel.set(xlim=study.plan.x_extent, ylim=study.plan.y_extent, aspect="equal")
     for name in routes:
         line = study.drives[name].route.points.T
         panel.plot(*line, color="white", linewidth=2.4)

@@ -12,8 +12,10 @@ from matplotlib.colors import to_hex
 
 from trundle._typing import Array
 from trundle.criteria import ClassMap, envelope_of
+from trundle.study.map_datasets import single_maps
+from trundle.study.maps import StudyMap
 from trundle.study.run import StudyResult
-from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 
 __all__ = ["MapView", "class_scale", "map_payload", "map_views"]
 
@@ -32,6 +34,8 @@ class MapView:
         Names of the routes driven.
     rms_velocity, peak_acceleration : ndarray of float, shape (n_places,)
         Levels that the share of runs stays below [m/s], [m/s2]; peaks NaN if not asked for.
+    printed : bool
+        Whether it is drawn among the pictures; at other speeds only the worst is.
     """
 
     title: str
@@ -39,33 +43,51 @@ class MapView:
     routes: tuple[str, ...]
     rms_velocity: Float[Array, " places"]
     peak_acceleration: Float[Array, " places"]
+    printed: bool
 
 
 def map_views(result: StudyResult) -> list[MapView]:
-    """Return the map of every case and road, and last the worst of all single vehicles' cases."""
+    """Return the map of every case, road and speed, and last the worst of all single vehicles'.
+
+    At speeds other than the study's, the worst of all single vehicles' maps follows those of each.
+    """
+    plan = result.study.map
+    if plan is None or not result.maps:
+        return []
     driven = {case.name: case.routes for case in result.study.cases}
-    views = [
-        MapView(
-            title=f"{key.case}, class {key.road}",
-            classes=one.classes,
-            routes=driven[key.case],
-            rms_velocity=one.rms_velocity,
-            peak_acceleration=one.peak_acceleration,
-        )
-        for key, one in result.maps.items()
-    ]
-    single = [view for view in views if len(view.routes) == 1]
-    if len(single) > 1:
-        views.append(
+    single = single_maps(result)
+    views: list[MapView] = []
+    for speed in (None, *plan.speeds):
+        at = "" if speed is None else f" at {speed / KMH:.3g} km/h"
+        views += [
             MapView(
-                title="worst of all single routes",
-                classes=envelope_of([view.classes for view in single]),
-                routes=tuple(result.study.drives),
-                rms_velocity=np.max([view.rms_velocity for view in single], axis=0),
-                peak_acceleration=np.max([view.peak_acceleration for view in single], axis=0),
+                title=f"{key.case}, class {key.road}{at}",
+                classes=one.classes,
+                routes=driven[key.case],
+                rms_velocity=one.rms_velocity,
+                peak_acceleration=one.peak_acceleration,
+                printed=speed is None,
             )
-        )
+            for key, one in result.maps.items()
+            if key.speed == speed
+        ]
+        here = [one for key, one in single.items() if key.speed == speed]
+        if speed is not None and here:
+            views.append(_worst(result, here, f"worst{at}"))
+    if len(single) > 1:
+        views.append(_worst(result, list(single.values()), "worst of all single routes"))
     return views
+
+
+def _worst(result: StudyResult, maps: list[StudyMap], title: str) -> MapView:
+    return MapView(
+        title=title,
+        classes=envelope_of([one.classes for one in maps]),
+        routes=tuple(result.study.drives),
+        rms_velocity=np.max([one.rms_velocity for one in maps], axis=0),
+        peak_acceleration=np.max([one.peak_acceleration for one in maps], axis=0),
+        printed=True,
+    )
 
 
 def class_scale(classes: ClassMap) -> tuple[list[str], list[str]]:
@@ -108,24 +130,27 @@ def _view(result: StudyResult, view: MapView, shape: tuple[int, int]) -> dict[st
     i = classes.index(plan.criterion)
     order = {-1: 0, **{index: rank + 1 for rank, index in enumerate(classes.order())}}
     ranks = np.array([order[int(k)] for k in classes.classes()])
-    names, _ = class_scale(classes)
-    texts = [
-        f"{names[rank]}<br>margin to {plan.criterion} {margin:.2f}"
-        + (f" at {band:.3g} Hz" if np.isfinite(band) else "")
-        + f"<br>{100 * share:.0f} % of the runs above it"
-        + f"<br>record RMS {rms / MICROMETRE_PER_SECOND:.3g} um/s"
-        + (f", peak {peak / GAL:.3g} gal" if np.isfinite(peak) else "")
-        for rank, margin, band, share, rms, peak in zip(
-            ranks, classes.margin[i], classes.governing_band[i], classes.share_exceeding[i],
-            view.rms_velocity, view.peak_acceleration, strict=True,
-        )
-    ]  # fmt: skip
     return {
         "title": view.title,
         "routes": list(view.routes),
         "ranks": ranks.reshape(shape).tolist(),
-        "texts": np.array(texts, dtype=object).reshape(shape).tolist(),
+        "readings": [
+            _readings(values, shape)
+            for values in (
+                classes.margin[i],
+                classes.governing_band[i],
+                100.0 * classes.share_exceeding[i],
+                view.rms_velocity / MICROMETRE_PER_SECOND,
+                view.peak_acceleration / GAL,
+            )
+        ],
     }
+
+
+def _readings(values: np.ndarray, shape: tuple[int, int]) -> list[list[float | None]]:
+    """Return three digits of every value by row; nothing for what is not a number."""
+    short = [float(f"{v:.3g}") if np.isfinite(v) else None for v in values]
+    return [short[start : start + shape[1]] for start in range(0, len(short), shape[1])]
 
 
 def _short(values: np.ndarray) -> list[float]:

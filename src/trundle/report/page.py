@@ -231,7 +231,7 @@ def _map_figures(result: StudyResult) -> Iterator[Drawing]:
     plan = result.study.map
     if plan is None or not result.maps:
         return
-    views = map_views(result)
+    views = [view for view in map_views(result) if view.printed]
     about = (
         f"{len(plan.places)} places, level that {plan.percentile:g} % of {plan.runs} runs stay "
         f"below, averaging {plan.averaging}; a cell shows the place at its middle. "

@@ -9,7 +9,7 @@ from trundle.structure.floor import (
     ShellGroup,
     SpringGroup,
 )
-from trundle.structure.plan import EDGES, FloorPlan, Rectangle, build_floor
+from trundle.structure.plan import EDGES, FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.reference import reference_plan, reference_unit
 from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
 from trundle.structure.statics import self_weight_deflection
@@ -30,6 +30,7 @@ __all__ = [
     "ShellSection",
     "SpringGroup",
     "build_floor",
+    "mesh_lines",
     "reference_plan",
     "reference_unit",
     "self_weight_deflection",

@@ -153,8 +153,7 @@ def build_floor(plan: FloorPlan, *, mesh_size: float) -> Floor:
         A mesh size that is not positive, or beyond half a bay.
     """
     mesh_size = positive("mesh_size", mesh_size)
-    x = _mesh_line(plan.x_extent, [plan.x_lines, plan.secondary_lines], mesh_size)
-    y = _mesh_line(plan.y_extent, [plan.y_lines], mesh_size)
+    x, y = mesh_lines(plan, mesh_size=mesh_size)
     grid = np.arange(len(x) * len(y)).reshape(len(y), len(x))
     slab_nodes = np.column_stack(
         [np.tile(x, len(y)), np.repeat(y, len(x)), np.zeros(len(x) * len(y))]
@@ -176,6 +175,16 @@ def build_floor(plan: FloorPlan, *, mesh_size: float) -> Floor:
         beams=(*beams, *columns),
         mirrors=_mirrors(plan),
         name=plan.name,
+    )
+
+
+def mesh_lines(
+    plan: FloorPlan, *, mesh_size: float
+) -> tuple[Float[Array, " columns"], Float[Array, " rows"]]:
+    """Return the lines of a plan's mesh along x and along y [m]; its nodes are their crossings."""
+    return (
+        _mesh_line(plan.x_extent, [plan.x_lines, plan.secondary_lines], mesh_size),
+        _mesh_line(plan.y_extent, [plan.y_lines], mesh_size),
     )
 
 

@@ -4,28 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-import numpy as np
-
 from trundle.criteria import find_criterion
 from trundle.dynamics import Modal
 from trundle.errors import InputError, Problem
 from trundle.road import RoughnessBand
-from trundle.route import StaticStart
 from trundle.simulate.ensemble import LEAST_BATCH
 from trundle.structure import FloorPlan
-from trundle.study.model import Assessment, Drive, MethodPlan, road_label
+from trundle.study.model import Drive, MethodPlan, road_label
 from trundle.study.read import StudyFile
-from trundle.study.schema import MapSection
 
-__all__ = ["MAPPED", "map_problems", "relation_problems"]
-
-MAPPED = ("band_rms_velocity", "peak_acceleration")
-"""Quantities that a map can be held against."""
+__all__ = ["relation_problems"]
 
 _MAX_STEPS = 1_000_000
 _MAX_HISTORY = 4e9  # bytes of histories held at once for one cell
 _EDGE = 1e-6  # m
-_MOST_PLACES = 20_000
 _TOP = 80.0  # Hz: bands are assessed up to here
 
 
@@ -278,51 +270,3 @@ def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> 
                     f"{drive.vehicle.length:g} m",
                     remedy='lengthen the route, or use entry = "drive_in"',
                 )
-
-
-def map_problems(
-    section: MapSection, plan: FloorPlan, assessment: Assessment, method: MethodPlan | None
-) -> Iterator[Problem]:
-    """Give the mistakes of a map: what it is held against, how it is averaged, how fine it is."""
-    names = [c.name for c in assessment.criteria if c.quantity in MAPPED and c.axis != "horizontal"]
-    if section.criterion is not None and section.criterion not in names:
-        yield Problem(
-            place="map.criterion",
-            value=repr(section.criterion),
-            rule="must be one of the study's curves of velocity in bands, or of peak acceleration",
-            remedy=f"there are: {', '.join(names) or 'none'}",
-        )
-    elif not names:
-        yield Problem(
-            place="map",
-            value="no curve that can be mapped",
-            rule="a map needs a curve of velocity in bands, or of peak acceleration",
-            remedy='add one to criteria.curves, such as "VC-B"',
-        )
-    if assessment.averaging not in {"max_1s", "event"}:
-        yield Problem(
-            place="map",
-            value=f"averaging {assessment.averaging!r}",
-            rule="a map is averaged by max_1s or event",
-            remedy='set criteria.averaging = "max_1s", or remove [map]',
-        )
-    if method is not None and (
-        not isinstance(method.interaction.integration, Modal)
-        or isinstance(method.entry, StaticStart)
-    ):
-        yield Problem(
-            place="map",
-            value=f"method {method.name!r}",
-            rule="a map needs modal superposition and a floor at rest at time 0",
-            remedy='assess by a method with integration = "modal" and entry = "drive_in"',
-        )
-    places = np.prod(
-        [np.ceil((b - a) / (section.spacing or 1e9)) for a, b in (plan.x_extent, plan.y_extent)]
-    )
-    if places > _MOST_PLACES:
-        yield Problem(
-            place="map.spacing",
-            value=f"{section.spacing:g} m",
-            rule=f"a map may have {_MOST_PLACES} places; this one would have {places:.3g}",
-            remedy="use a larger spacing; 2 m shows every bay of most floors",
-        )

@@ -22,9 +22,9 @@ from trundle.structure import (
     reference_plan,
 )
 from trundle.study import schema
-from trundle.study._relations import MAPPED, map_problems, relation_problems
+from trundle.study._relations import relation_problems
+from trundle.study.build_map import MapInput, map_plan_of
 from trundle.study.convert import floor_plan_of, isolation_of, road_of, vehicle_of
-from trundle.study.maps import MapPlan, map_places
 from trundle.study.model import (
     Assessment,
     Case,
@@ -47,7 +47,6 @@ T = TypeVar("T")
 
 _MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
 _DEFAULT_DRIVE_IN = 3.0  # m
-_MAP_RUNS = 200  # of a map, unless the study says otherwise
 
 
 def load_study(path: Path | str) -> Study:
@@ -91,7 +90,19 @@ class _Builder:
         band, follows = self._band()
         assessment = self._assessment()
         isolations = self._isolations()
-        mapped = self._map(plan, assessment, methods)
+        mapped, mistakes = map_plan_of(
+            MapInput(
+                file=file,
+                plan=plan,
+                mesh_size=mesh_size,
+                assessment=assessment,
+                drives=drives,
+                methods=methods,
+                band=band,
+                band_follows_dt=follows,
+            )
+        )
+        self.problems += mistakes
         self._unique_names()
         self.problems += relation_problems(
             file, plan, drives, methods, band=band, follows_dt=follows
@@ -324,43 +335,6 @@ class _Builder:
             percentile=section.percentile,
             averaging=section.averaging,
             events=section.events,
-        )
-
-    def _map(
-        self,
-        plan: FloorPlan | None,
-        assessment: Assessment | None,
-        methods: dict[str, MethodPlan],
-    ) -> MapPlan | None:
-        section = self.file.tables.get("map")
-        if section is None or plan is None or self.file.general is None:
-            return None
-        if "criteria" not in self.file.tables:
-            self.problems.append(
-                Problem(
-                    place="map",
-                    value="no [criteria]",
-                    rule="a map holds the floor against criteria",
-                    remedy="add [criteria] with method and curves",
-                )
-            )
-        if assessment is None:
-            return None
-        self.problems += map_problems(section, plan, assessment, methods.get(assessment.method))
-        curves = tuple(c for c in assessment.criteria if c.quantity in MAPPED)
-        names = [c.name for c in curves if c.axis != "horizontal"]
-        if not names:
-            return None
-        wanted = section.criterion or ("VC-B" if "VC-B" in names else names[-1])
-        return MapPlan(
-            x=map_places(plan.x_extent, section.spacing, plan.y_extent),
-            y=map_places(plan.y_extent, section.spacing, plan.x_extent),
-            runs=min(section.runs or _MAP_RUNS, self.file.general.runs),
-            criteria=curves,
-            criterion=wanted,
-            percentile=assessment.percentile,
-            averaging=assessment.averaging,
-            traffic=section.traffic,
         )
 
     def _isolations(self) -> dict[str, Isolation]:

@@ -10,6 +10,7 @@ import xarray as xr
 
 from trundle.response import ExactStatistics
 from trundle.study.cells import Cell, CellKey
+from trundle.study.map_datasets import map_groups
 from trundle.study.run import StudyResult
 
 __all__ = ["plain", "result_groups"]
@@ -43,9 +44,7 @@ def result_groups(result: StudyResult) -> dict[str, xr.Dataset]:
             groups[f"/contacts/{case.name}/{method.name}"] = _force_dataset(
                 result, case.name, method.name
             )
-        if any(key.case == case.name for key in result.maps):
-            groups[f"/maps/{case.name}"] = _map_dataset(result, case.name)
-    return groups
+    return groups | map_groups(result)
 
 
 def _grid(result: StudyResult) -> tuple[list[str], list[str], list[str]]:
@@ -198,50 +197,3 @@ def _force_dataset(result: StudyResult, case: str, method: str) -> xr.Dataset:
             "contact": list(cells[0].contact_names),
         },
     )
-
-
-def _map_dataset(result: StudyResult, case: str) -> xr.Dataset:
-    """Return the maps of a case on every road, on the grid of its places."""
-    study = result.study
-    plan, assessment = study.map, study.assessment
-    assert plan is not None  # there are maps
-    assert assessment is not None  # a map is held against criteria
-    roads = list(study.roads)
-    maps = [result.maps[CellKey(case, road, assessment.method)] for road in roads]
-    classes = maps[0].classes
-    grid = (len(plan.y), len(plan.x))
-
-    def by_place(values: list[np.ndarray], units: str, long_name: str) -> Variable:
-        data = np.stack(values).reshape(len(roads), *grid)
-        return (("road", "y", "x"), data, {"units": units, "long_name": long_name})
-
-    def by_criterion(name: str, units: str, long_name: str) -> Variable:
-        data = np.stack([getattr(one.classes, name) for one in maps])
-        shape = (len(roads), len(classes.criteria), *grid)
-        attributes = {"units": units, "long_name": long_name}
-        return (("road", "criterion", "y", "x"), data.reshape(shape), attributes)
-
-    share = f"that {plan.percentile:g} % of {plan.runs} runs stay below"
-    return xr.Dataset(
-        {
-            "margin": by_criterion("margin", "1", "smallest limit over level"),
-            "share_exceeding": by_criterion("share_exceeding", "1", "share of runs above it"),
-            "governing_band": by_criterion("governing_band", "Hz", "band of the smallest margin"),
-            "class_index": by_place(
-                [one.classes.classes().astype(float) for one in maps], "1",
-                "strictest velocity criterion passed, -1 for none",
-            ),
-            "rms_velocity": by_place(
-                [one.rms_velocity for one in maps], "m/s", f"record RMS velocity {share}"
-            ),
-            "peak_acceleration": by_place(
-                [one.peak_acceleration for one in maps], "m/s2", f"peak acceleration {share}"
-            ),
-        },
-        coords={
-            "road": roads,
-            "criterion": [criterion.name for criterion in classes.criteria],
-            "x": ("x", plan.x, {"units": "m"}),
-            "y": ("y", plan.y, {"units": "m"}),
-        },
-    )  # fmt: skip

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -77,6 +77,8 @@ class Job:
         What stands between floor and tool at some of the points.
     map : MapPlan or None
         What is mapped over the floor, by the method that carries the verdict.
+    speed : float or None
+        Speed of every vehicle if it is not the study's [m/s]; such a job leaves a map alone.
     """
 
     name: str
@@ -93,6 +95,7 @@ class Job:
     quantities: tuple[SpectrumQuantity, ...]
     isolations: Mapping[str, Isolation]
     map: MapPlan | None
+    speed: float | None
 
     @property
     def pieces(self) -> tuple[str, ...]:
@@ -126,10 +129,11 @@ class Job:
 def plan_jobs(study: Study) -> tuple[Job, ...]:
     """Return the jobs of a study, in the order of its methods and cases."""
     return tuple(
-        _job(study, (i, j, k), (case, method), roads)
+        job
         for i, method in enumerate(study.methods)
         for j, case in enumerate(study.cases)
         for k, roads in enumerate(_groups(study))
+        for job in _jobs(study, f"method{i}-case{j}-roads{k}", (case, method), roads)
     )
 
 
@@ -141,9 +145,10 @@ def _groups(study: Study) -> list[list[str]]:
     return list(groups.values())
 
 
-def _job(
-    study: Study, place: tuple[int, int, int], what: tuple[Case, MethodPlan], roads: list[str]
-) -> Job:
+def _jobs(
+    study: Study, name: str, what: tuple[Case, MethodPlan], roads: list[str]
+) -> Iterator[Job]:
+    """Give the job at the study's own speeds, and one for each further speed that is mapped."""
     case, method = what
     crossings = study.crossings(case, roads[0], method)
     first = study.roads[roads[0]].roughness
@@ -153,8 +158,8 @@ def _job(
     n_parts = -(-study.runs // size)
     edges = np.linspace(0, study.runs, n_parts + 1).astype(int)
     modal = isinstance(method.interaction.integration, Modal)
-    return Job(
-        name="method{}-case{}-roads{}".format(*place),
+    job = Job(
+        name=name,
         case=case,
         method=method,
         crossings=crossings,
@@ -168,7 +173,20 @@ def _job(
         quantities=spectra_asked_for(study.assessment.criteria) if study.assessment else (),
         isolations=study.isolations,
         map=_map(study, case, method),
+        speed=None,
     )
+    yield job
+    for i, speed in enumerate(job.map.speeds if job.map is not None else ()):
+        there = study.at_speed(speed).crossings(case, roads[0], method)
+        yield replace(
+            job,
+            name=f"{name}-speed{i}",
+            crossings=there,
+            parts=(),
+            n_waves=0,
+            duration=study.long_enough(there),
+            speed=speed,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

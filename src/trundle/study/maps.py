@@ -15,7 +15,7 @@ from trundle.signals import Averaging
 from trundle.simulate import Layout, PlaceResponses, contact_force_histories
 from trundle.study.pieces import Piece
 
-__all__ = ["MapPlan", "StudyMap", "map_of", "map_piece", "map_places"]
+__all__ = ["MapKey", "MapPlan", "StudyMap", "map_of", "map_piece", "map_places"]
 
 _MOST = 300  # places of a map unless a spacing is given: half a minute for 1000 runs
 _ARRAYS = ("margin", "governing_band", "share_exceeding")
@@ -42,6 +42,10 @@ class MapPlan:
         Averaging rule of band levels.
     traffic : bool
         Whether several vehicles at once are mapped too; they take as long as all of them.
+    every_step : bool
+        Whether the largest 1 s is looked for at every time step, see `floor_map`.
+    speeds : tuple of float
+        Constant speeds of every vehicle that are mapped beside those of the study [m/s].
     """
 
     x: Float[Array, " columns"]
@@ -52,6 +56,8 @@ class MapPlan:
     percentile: float
     averaging: Averaging
     traffic: bool
+    every_step: bool = False
+    speeds: tuple[float, ...] = ()
 
     @property
     def places(self) -> Float[Array, "places 2"]:
@@ -62,6 +68,15 @@ class MapPlan:
     def peaks(self) -> bool:
         """Whether a criterion asks for peak accelerations."""
         return any(criterion.quantity == "peak_acceleration" for criterion in self.criteria)
+
+
+@dataclass(frozen=True)
+class MapKey:
+    """Name a map: what drove, on what road, at what speed if not the study's own [m/s]."""
+
+    case: str
+    road: str
+    speed: float | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -124,6 +139,7 @@ def map_piece(
         f_max=layout.f_max,
         averaging=plan.averaging,
         peaks=plan.peaks,
+        every_step=plan.every_step,
         progress=progress,
     )
     arrays: dict[str, Array] = {}

@@ -33,7 +33,6 @@ from trundle.vehicle import Vehicle
 
 __all__ = ["resonance_speeds", "try_changes"]
 
-_TAIL = 5.0  # s of record after the last wheel has left
 _ORDERS = (1, 2, 3)  # multiples of the axle passing frequency that are marked
 
 
@@ -218,7 +217,7 @@ def _passages(tried: _Tried, case: Case, speed: float, runs: int) -> _Passages:
         crossings,
         method=tried.method.interaction,
         points=study.points,
-        duration=max(study.duration, max(c.exit_time for c in crossings) + _TAIL),
+        duration=study.long_enough(crossings),
     )
     found, mean = runs_with_mean(layout, runs=range(runs), seed=study.seed)
     excited_to = min(speed * crossing.band.n_max for crossing in crossings)

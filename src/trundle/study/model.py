@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from trundle.criteria import Criterion
@@ -25,6 +25,9 @@ __all__ = [
     "PrintedBound",
     "Study",
 ]
+
+
+_TAIL = 5.0  # s of record after the last wheel has left
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -223,6 +226,10 @@ class Study:
             for name, drive in self.drives.items()
         }
         return replace(self, drives=drives)
+
+    def long_enough(self, crossings: Sequence[Crossing]) -> float:
+        """Return the length of a record in which crossings end and the floor comes to rest [s]."""
+        return max(self.duration, max(one.exit_time for one in crossings) + _TAIL)
 
     def band_for(self, drive: Drive, method: MethodPlan) -> RoughnessBand:
         """Return the waves that a method's time step can follow at a route's speed."""

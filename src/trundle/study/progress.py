@@ -29,7 +29,8 @@ class Bar:
     def begin(self, job: Job) -> None:
         """Tell that a job is begun."""
         with self._lock:
-            self._label = f"{job.case.name}, {job.method.name}"
+            at = "" if job.speed is None else f" at {3.6 * job.speed:.3g} km/h"
+            self._label = f"{job.case.name}{at}, {job.method.name}"
             self._show()
 
     def part(self, name: str, share: float) -> None:

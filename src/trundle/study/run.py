@@ -15,7 +15,7 @@ from trundle.structure import Floor
 from trundle.study.cells import Cell, CellKey
 from trundle.study.in_threads import compute_here
 from trundle.study.jobs import Job, lay_out_job, plan_jobs
-from trundle.study.maps import StudyMap, map_of
+from trundle.study.maps import MapKey, StudyMap, map_of
 from trundle.study.mode_cache import modes_of
 from trundle.study.model import Study
 from trundle.study.pieces import Piece, cell_of
@@ -40,8 +40,9 @@ class StudyResult:
         Every cell.
     verdicts : mapping of CellKey to tuple of Verdict
         Verdicts of the cells of the assessed method.
-    maps : mapping of CellKey to StudyMap
-        Maps of the cells of the assessed method, where the study asks for them.
+    maps : mapping of MapKey to StudyMap
+        Maps by the assessed method, where the study asks for them: at the study's speeds and at
+        those that its map names.
     modes : Modes or None
         Natural modes of the floor, where a method used them.
     """
@@ -49,7 +50,7 @@ class StudyResult:
     study: Study
     cells: Mapping[CellKey, Cell]
     verdicts: Mapping[CellKey, tuple[Verdict, ...]]
-    maps: Mapping[CellKey, StudyMap]
+    maps: Mapping[MapKey, StudyMap]
     modes: Modes | None
 
     def warnings(self) -> dict[str, tuple[FitnessWarning, ...]]:
@@ -126,14 +127,16 @@ def _result(
     study: Study, jobs: tuple[Job, ...], store: PieceStore, modes: Modes | None
 ) -> StudyResult:
     found: dict[CellKey, Cell] = {}
-    maps: dict[CellKey, StudyMap] = {}
+    maps: dict[MapKey, StudyMap] = {}
     for job in jobs:
         pieces = [store.load(name) for name in job.pieces]
         for i, (road, factor) in enumerate(job.factors.items()):
             key = CellKey(job.case.name, road, job.method.name)
-            found[key] = cell_of(key, i, factor, pieces)
+            if job.speed is None:
+                found[key] = cell_of(key, i, factor, pieces)
             if job.map is not None:
-                maps[key] = map_of(job.map, pieces[-1], i)
+                map_key = MapKey(job.case.name, road, job.speed)
+                maps[map_key] = map_of(job.map, pieces[-1], i)
     cells = {key: found[key] for key in _keys(study)}
     verdicts = {
         key: _assess(study, cell)
@@ -144,9 +147,21 @@ def _result(
         study=study,
         cells=cells,
         verdicts=verdicts,
-        maps={key: maps[key] for key in cells if key in maps},
+        maps=_in_order(study, maps),
         modes=modes,
     )
+
+
+def _in_order(study: Study, maps: Mapping[MapKey, StudyMap]) -> dict[MapKey, StudyMap]:
+    """Return maps by speed, the study's own first, then by case and road."""
+    speeds = () if study.map is None else study.map.speeds
+    keys = (
+        MapKey(case.name, road, speed)
+        for speed in (None, *speeds)
+        for case in study.cases
+        for road in study.roads
+    )
+    return {key: maps[key] for key in keys if key in maps}
 
 
 class _Floors:

@@ -265,10 +265,13 @@ class CriteriaSection(Section):
 class MapSection(Section):
     """What is mapped over the whole floor, by the method that carries the verdict."""
 
+    places: Literal["grid", "nodes"] = "grid"
     spacing: PositiveLength | None = None
     runs: Annotated[Whole, Field(ge=1, le=_MANY)] | None = None
     criterion: str | None = None
     traffic: Flag = False
+    speeds: Annotated[tuple[Speed, ...], Field(max_length=20)] = ()
+    every_step: Flag = False
 
 
 class PrintedSection(Section):

@@ -62,7 +62,8 @@ _COUNTED = {
 }
 _CYCLIC = ("frequency", "wavenumber")
 _UNIT_CHARACTERS = re.compile(r"^[A-Za-zµμ%/*^()·\s\d²³-]*$")
-_GRAVITY = re.compile(r"\bgn?\b")  # in a unit of motion g is gravity, not a gram
+# in a unit of motion g is gravity, not a gram, and mg a thousandth of it
+_GRAVITY = re.compile(r"\b(?P<prefix>[muµμ]?)gn?\b")
 _POWER = re.compile(r"(?<=[A-Za-zµμ])([23])\b")
 
 
@@ -205,7 +206,7 @@ def _parsed(text: str, registry: Any) -> Any:
     if match is None or not _UNIT_CHARACTERS.match(unit):
         raise InputError(f"{text!r} is not understood; write such as 'mm/s2' or '10 V/(m/s2)'")
     spelled = unit.replace("·", "*").replace("²", "**2").replace("³", "**3").replace("^", "**")
-    spelled = _GRAVITY.sub("standard_gravity", _POWER.sub(r"**\1", spelled))
+    spelled = _GRAVITY.sub(r"\g<prefix>standard_gravity", _POWER.sub(r"**\1", spelled))
     try:
         number = float(match["number"] or 1.0)
         return number * (registry.parse_units(spelled) if spelled else registry.dimensionless)

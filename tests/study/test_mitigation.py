@@ -1,14 +1,12 @@
 """What would help: every combination is what a study of it would say."""
 
 import csv
-import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from test_bad_input import GOOD
 
-from trundle.cli.app import main
 from trundle.errors import FitnessWarning, InputError
 from trundle.report.figures_mitigation import strictest
 from trundle.signals import Isolator
@@ -158,20 +156,11 @@ def test_resonance_speeds_are_those_of_axles_in_step():
     assert all(3.0 <= v <= 7.0 for v in resonance_speeds(truck, 4.0, (3.0, 7.0)))
 
 
-def run(monkeypatch, *arguments):
-    monkeypatch.setattr(sys, "argv", ["trundle", *map(str, arguments)])
-    try:
-        main()
-    except SystemExit as stop:
-        return stop.code or 0
-    return 0
-
-
-def test_the_command_writes_matrix_and_margins(tmp_path, monkeypatch, capsys):
+def test_the_command_writes_matrix_and_margins(tmp_path, monkeypatch, capsys, trundle):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.toml").write_text(TEXT)
     options = ("--speeds", "10 km/h, 15 km/h", "--roads", "A,B", "--runs", "2", "--damping", "5 %")
-    assert run(monkeypatch, "mitigate", "study.toml", *options) == 0
+    assert trundle("mitigate", "study.toml", *options) == 0
     assert "Strictest criterion met at tool: damping 5 %" in capsys.readouterr().out
     folder = tmp_path / "study-mitigation-results"
     with (folder / "summary.csv").open() as file:
@@ -194,9 +183,11 @@ def test_the_command_writes_matrix_and_margins(tmp_path, monkeypatch, capsys):
         ("--slab", "0.3 m, 300 mm", "slab 300 mm stands there 2 times"),
     ],
 )
-def test_changes_that_cannot_be_are_refused(tmp_path, monkeypatch, capsys, option, value, told):
+def test_changes_that_cannot_be_are_refused(
+    tmp_path, monkeypatch, capsys, trundle, option, value, told
+):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.toml").write_text(TEXT)
-    assert run(monkeypatch, "mitigate", "study.toml", option, value) == 2
+    assert trundle("mitigate", "study.toml", option, value) == 2
     assert told in capsys.readouterr().err
     assert not (tmp_path / "study-mitigation-results").exists()

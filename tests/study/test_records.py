@@ -1,15 +1,14 @@
 """Measured records: made files with known levels, files that are refused or warned of by name."""
 
 import json
-import sys
 
 import numpy as np
 import pytest
 from scipy.io import wavfile
 
-from trundle.cli.app import main
 from trundle.criteria import VC, find_criterion
 from trundle.errors import InputError
+from trundle.response import few_runs_warnings, level_warnings, percentile_interval
 from trundle.signals import Record, band_edges, mid_band_frequencies, motion_of
 from trundle.study.assess_record import assess_record
 from trundle.study.read_record import RecordOptions, read_record
@@ -180,6 +179,9 @@ def test_records_that_cannot_be_right_are_refused(tmp_path, how, told):
         ("time [s],z [mm/s2],y [mm/s]\n0,1,1\n0.01,2,2\n", NO_OPTIONS, "assess them apart"),
         ("time [s],z [mm/s2]\n0,1\n0.01,2\n", RecordOptions(rate="500 Hz"), "one is wrong"),
         ("time [s],z [mm/s2]\n0,1\n0.01,2,3\n", NO_OPTIONS, "line 3 has 3 columns"),
+        ("# a logger\n\ntime [s],z [mm/s2]\n0,1\n0.01,2,3\n", NO_OPTIONS, "line 5 has 3 columns"),
+        ('time [s],z [mm/s2]\n0,"1\n0.01,2"\n', NO_OPTIONS, "a quoted cell holds a line break"),
+        ("time [s],z [V]\n0,1\n0.01,2\n", RecordOptions(sensitivity="0 V/g"), "greater than 0"),
         ("", NO_OPTIONS, "holds no samples"),
     ],
 )
@@ -226,20 +228,11 @@ def test_what_a_record_cannot_show_is_not_assessed():
     assert verdict.unresolved == (50.0, 63.0, 80.0)
 
 
-def run(monkeypatch, *arguments):
-    monkeypatch.setattr(sys, "argv", ["trundle", *map(str, arguments)])
-    try:
-        main()
-    except SystemExit as stop:
-        return stop.code or 0
-    return 0
-
-
-def test_the_command_writes_a_report(tmp_path, monkeypatch, capsys):
+def test_the_command_writes_a_report(tmp_path, monkeypatch, capsys, trundle):
     monkeypatch.chdir(tmp_path)
     t, a = tones()
     write_csv(tmp_path / "event <b>.csv", t, a)
-    assert run(monkeypatch, "assess", "event <b>.csv", "-c", "VC-A,VC-D,R-office") == 0
+    assert trundle("assess", "event <b>.csv", "-c", "VC-A,VC-D,R-office") == 0
     printed = capsys.readouterr().out
     assert "VC-D" in printed
     folder = tmp_path / "event <b>-results"
@@ -252,7 +245,7 @@ def test_the_command_writes_a_report(tmp_path, monkeypatch, capsys):
     levels = (folder / "levels.csv").read_text().splitlines()
     assert levels[0] == "band_hz,z [um/s]"
     assert float(levels[7].split(",")[1]) == pytest.approx(100.0, rel=0.02)
-    assert run(monkeypatch, "assess", "event <b>.csv", "--averaging", "max_2s") == 2
+    assert trundle("assess", "event <b>.csv", "--averaging", "max_2s") == 2
     assert "max_1s" in capsys.readouterr().err
 
 
@@ -316,3 +309,79 @@ def test_a_high_pass_leaves_the_lowest_band_whole():
     )
     with pytest.raises(InputError, match=r"0\.5 Hz at most"):
         assess_record(record, VC, high_pass=0.8)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "heading"),
+    [("utf-16", "time [s]\tz [µm/s2]"), ("cp1252", "Zeit [s]\tBöden [µm/s²]"), ("utf-8-sig", "t\tz [um/s2]")],
+)  # fmt: skip
+def test_text_of_spreadsheets_and_loggers(tmp_path, encoding, heading):
+    """UTF-16 of a spreadsheet, Windows-1252 with a micro sign, a byte order mark."""
+    t, a = tones(duration=10.0)
+    rows = "\n".join(f"{x:.4f}\t{1e6 * y:.6f}" for x, y in zip(t, a, strict=True))
+    (tmp_path / "r.txt").write_bytes(f"{heading}\n{rows}\n".encode(encoding))
+    record = read_record(tmp_path / "r.txt", NO_OPTIONS)
+    np.testing.assert_allclose(record.samples[0], a, atol=1e-12)
+    (tmp_path / "r.txt").write_bytes(b"\x00\x01\x02" * 100)
+    with pytest.raises(InputError, match="is not text"):
+        read_record(tmp_path / "r.txt", NO_OPTIONS)
+
+
+@pytest.mark.parametrize("heading", ["time [s];z [mg];", "time [s];z [mg]"])
+def test_delimiters_behind_the_last_column(tmp_path, heading):
+    """Some loggers end every line, or every line but the heading, with a delimiter; mg is milli-g."""
+    t, a = tones(duration=10.0)
+    rows = "\n".join(f"{x:.4f};{y / 9.80665e-3:.9f};" for x, y in zip(t, a, strict=True))
+    (tmp_path / "r.csv").write_text(f"{heading}\n{rows}\n")
+    record = read_record(tmp_path / "r.csv", NO_OPTIONS)
+    assert record.channel_names == ("z",)
+    np.testing.assert_allclose(record.samples[0], a, atol=1e-10)
+
+
+def test_doses_are_for_as_many_events_as_are_said(tmp_path, monkeypatch, capsys, trundle):
+    """VDV grows by the fourth root: 16 passages have twice the dose of one, and half its margin."""
+    monkeypatch.chdir(tmp_path)
+    write_csv(tmp_path / "r.csv", *tones())
+    margins = []
+    for events in ("1", "16"):
+        options = ("-c", "VDV-residential-day-low", "--events", events, "--out", f"out{events}")
+        assert trundle("assess", "r.csv", *options) == 0
+        summary = json.loads((tmp_path / f"out{events}" / "summary.json").read_text())
+        margins.append(summary["verdicts"][0]["margin"])
+    assert margins[0] / margins[1] == pytest.approx(2.0, rel=1e-9)
+
+
+def test_single_numbers_of_a_short_record_are_not_passed():
+    """5 s hold 5 periods of 1 Hz: a weighted number could miss what is slow; too loud is too loud."""
+    _, v = tones("velocity", duration=5.0)
+    for scale, status in ((1e-3, "not assessed"), (1e3, "fail")):
+        record = Record(
+            samples=scale * v[None],
+            sampling_frequency=FS,
+            quantity="velocity",
+            channel_names=("z",),
+        )
+        assert assess_record(record, [find_criterion("R-office")]).verdicts[0].status == status
+
+
+def test_the_warning_of_scatter_is_that_of_the_averaging_rule():
+    """An average over 2 s scatters by 1/sqrt(2) of one over 1 s; over an event, its length decides."""
+    texts = {
+        rule: str(level_warnings(rule, 30.0)[0]) for rule in ("max_1s", "slow", "fast", "event")
+    }
+    assert "104 % in the 1 Hz band" in texts["max_1s"]  # 1 / (2 sqrt(0.2308 Hz x 1 s))
+    assert "74 % in the 1 Hz band" in texts["slow"]
+    assert "208 % in the 1 Hz band" in texts["fast"]
+    assert "record of 30 s" in texts["event"]
+
+
+def test_a_percentile_of_few_runs_is_doubted():
+    """The largest of n is below the 95 % level with 0.95^n: 72 runs for 2.5 %."""
+    assert 0.95**72 < 0.025 < 0.95**71
+    (warning,) = few_runs_warnings(71, 95.0)
+    assert "72 runs" in str(warning)
+    assert few_runs_warnings(72, 95.0) == ()
+    assert few_runs_warnings(1, 100.0) == ()
+    values = np.arange(72.0)
+    assert np.isfinite(percentile_interval(values, 95.0)[1])
+    assert np.isinf(percentile_interval(values[:71], 95.0)[1])

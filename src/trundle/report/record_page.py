@@ -41,9 +41,27 @@ def record_rows(result: RecordResult) -> list[dict[str, Any]]:
 
 def write_record_report(result: RecordResult, folder: Path) -> Path:
     """Write ``report.html``, ``levels.csv``, ``summary.json`` and figures; return the page."""
-    figures = folder / "figures"
+    pictures = _pictures(result, folder / "figures")
+    _write_levels(result, folder / "levels.csv")
+    text = json.dumps(plain(_summary(result)), indent=1, allow_nan=False)
+    (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+    page = folder / "report.html"
+    page.write_text(
+        template("record.html.j2").render(
+            result=result,
+            record=result.record,
+            rows=record_rows(result),
+            pictures=pictures,
+            version=__version__,
+        ),
+        encoding="utf-8",
+    )
+    return page
+
+
+def _pictures(result: RecordResult, figures: Path) -> list[dict[str, str]]:
     figures.mkdir()
-    pictures = []
+    found: list[dict[str, str]] = []
     for picture, draw in (
         (
             Picture(
@@ -64,9 +82,12 @@ def write_record_report(result: RecordResult, folder: Path) -> Path:
     ):
         with rc_context(STYLE):
             save(draw(result), figures, picture.name)
-        pictures.append(embedded(picture, figures))
-    _write_levels(result, folder / "levels.csv")
-    summary = {
+        found.append(embedded(picture, figures))
+    return found
+
+
+def _summary(result: RecordResult) -> dict[str, Any]:
+    return {
         "program": "trundle",
         "version": __version__,
         "source": result.record.source,
@@ -89,20 +110,6 @@ def write_record_report(result: RecordResult, folder: Path) -> Path:
         ],
         "warnings": [str(warning) for warning in result.warnings],
     }
-    text = json.dumps(plain(summary), indent=1, allow_nan=False)
-    (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
-    page = folder / "report.html"
-    page.write_text(
-        template("record.html.j2").render(
-            result=result,
-            record=result.record,
-            rows=record_rows(result),
-            pictures=pictures,
-            version=__version__,
-        ),
-        encoding="utf-8",
-    )
-    return page
 
 
 def _write_levels(result: RecordResult, file: Path) -> None:

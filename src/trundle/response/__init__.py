@@ -3,6 +3,7 @@
 from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
 from trundle.response.floor_map import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
+from trundle.response.level_warnings import few_runs_warnings, level_warnings
 from trundle.response.measured import runs_of_record, without_short_bands
 from trundle.response.peaks import Process, peak_levels
 from trundle.response.reduction import (
@@ -30,8 +31,10 @@ __all__ = [
     "UpperBounds",
     "behind_isolators",
     "exact_statistics",
+    "few_runs_warnings",
     "floor_map",
     "join",
+    "level_warnings",
     "peak_levels",
     "percentile_interval",
     "percentile_rank",

@@ -6,10 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from trundle.errors import FitnessWarning
 from trundle.response.reduction import Reduced
 from trundle.response.spectra import BandSpectra
-from trundle.signals import Record, level_scatter, motion_of, record_warnings
+from trundle.signals import Record, motion_of, record_warnings
 from trundle.simulate import Runs
 
 __all__ = ["runs_of_record", "without_short_bands"]
@@ -40,7 +39,7 @@ def runs_of_record(record: Record, *, high_pass: float = 0.5) -> Runs:
         seed=0,
         method=f"measured {record.quantity}, high-pass {high_pass:g} Hz",
         f_max=0.5 * fs,
-        warnings=(*record_warnings(record), _scatter()),
+        warnings=record_warnings(record),
     )
 
 
@@ -55,12 +54,3 @@ def without_short_bands(reduced: Reduced, record: Record) -> Reduced:
 
     more = {name: held(spectra) for name, spectra in reduced.more.items()}
     return replace(reduced, spectra=held(reduced.spectra), more=more)
-
-
-def _scatter() -> FitnessWarning:
-    one, eight, eighty = 100.0 * level_scatter(10.0 ** np.array([0.0, 0.9, 1.9]), 1.0)
-    return FitnessWarning(
-        subject="scatter",
-        message="one event is one sample: averaged over 1 s, a level of random motion scatters by "
-        f"about {one:.0f} % in the 1 Hz band, {eight:.0f} % at 8 Hz and {eighty:.0f} % at 80 Hz",
-    )

@@ -19,7 +19,13 @@ from trundle.criteria import (
     spectra_asked_for,
 )
 from trundle.errors import FitnessWarning, InputError
-from trundle.response import Reduced, reduce_runs, runs_of_record, without_short_bands
+from trundle.response import (
+    Reduced,
+    level_warnings,
+    reduce_runs,
+    runs_of_record,
+    without_short_bands,
+)
 from trundle.signals import Averaging, Record, clipped_channels
 from trundle.simulate import Runs
 
@@ -80,8 +86,9 @@ class RecordResult:
 
     @property
     def warnings(self) -> tuple[FitnessWarning, ...]:
-        """Return the doubts about the record."""
-        return self.runs.warnings
+        """Return the doubts about the record, and about levels of one passage."""
+        length = self.record.samples.shape[1] / self.record.sampling_frequency
+        return (*self.runs.warnings, *level_warnings(self.averaging, length))
 
 
 def assess_record(

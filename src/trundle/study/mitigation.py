@@ -13,7 +13,12 @@ from threadpoolctl import threadpool_limits
 from trundle.criteria import assess_reduced, spectra_asked_for
 from trundle.dynamics import Modes
 from trundle.errors import InputError
-from trundle.response import behind_isolators, reduce_rougher
+from trundle.response import (
+    behind_isolators,
+    few_runs_warnings,
+    level_warnings,
+    reduce_rougher,
+)
 from trundle.road import RoadClass
 from trundle.simulate import (
     MeanResponse,
@@ -238,7 +243,11 @@ def _outcomes(
         averaging=assessment.averaging,
         quantities=spectra_asked_for(assessment.criteria),
     )
-    doubts = tuple(w for w in runs.warnings if w.subject != LOST_CONTACT)
+    doubts = (
+        *(w for w in runs.warnings if w.subject != LOST_CONTACT),
+        *level_warnings(assessment.averaging, float(runs.time[-1])),
+        *few_runs_warnings(len(runs.acceleration), assessment.percentile),
+    )
     return [
         Outcome(
             change=change.label,

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import re
 import warnings
-from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,15 +12,13 @@ from scipy.io import wavfile
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.signals import Record, RecordQuantity
+from trundle.study.read_csv import RawRecord, even_rate, read_csv
 from trundle.units import motion_scale, to_si
 
 __all__ = ["RecordOptions", "read_record"]
 
 _LARGEST = 2_000_000_000  # bytes
 _MISMATCH = 0.005  # relative, between a stated rate and that of the time stamps
-_HEADING = re.compile(r"^\s*(?P<name>.*?)\s*(\[(?P<square>[^\[\]]+)\]|\((?P<round>[^()]+)\))\s*$")
-_WORDS = re.compile(r"[^\s\[\(]+\s*[\[\(][^\]\)]*[\]\)]|\S+")  # name [unit], or a word
-_TIME = re.compile(r"^\s*(t|time\w*|elapsed\w*|zeit|temps)\b", re.IGNORECASE)
 _UFF_ORDINATE = {11: "m/s", 12: "m/s2"}  # codes of what the samples are, of dataset 58
 
 
@@ -50,15 +44,6 @@ class RecordOptions:
     full_scale: str = ""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Raw:
-    samples: Array  # (channels, steps)
-    rate: float | None
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    whole: bool = False  # numbers of a WAV file that are shares of a full scale
-
-
 def read_record(path: Path, options: RecordOptions) -> Record:
     """Read a record into SI units.
 
@@ -79,7 +64,7 @@ def read_record(path: Path, options: RecordOptions) -> Record:
             raise InputError(f"{path}: no such file")
         if path.stat().st_size > _LARGEST:
             raise InputError(f"{path}: a record is at most 2 GB; cut it into events")
-        raw = _READERS.get(path.suffix.lower(), _read_csv)(path)
+        raw = _READERS.get(path.suffix.lower(), read_csv)(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
     samples, quantity = _in_si(raw, options, path)
@@ -92,7 +77,7 @@ def read_record(path: Path, options: RecordOptions) -> Record:
     )
 
 
-def _rate(raw: _Raw, options: RecordOptions, path: Path) -> float:
+def _rate(raw: RawRecord, options: RecordOptions, path: Path) -> float:
     stated = to_si(options.rate, "frequency") if options.rate else None
     if raw.rate is None and stated is None:
         raise InputError(f"{path}: has no time column; say its rate: --rate '500 Hz'")
@@ -118,7 +103,7 @@ def _unit(own: str, options: RecordOptions, path: Path, name: str) -> str:
     return options.full_scale or own or options.unit
 
 
-def _in_si(raw: _Raw, options: RecordOptions, path: Path) -> tuple[Array, RecordQuantity]:
+def _in_si(raw: RawRecord, options: RecordOptions, path: Path) -> tuple[Array, RecordQuantity]:
     if raw.whole and not options.full_scale:
         raise InputError(
             f"{path}: its numbers are shares of a full scale; say what that is: "
@@ -143,106 +128,7 @@ def _in_si(raw: _Raw, options: RecordOptions, path: Path) -> tuple[Array, Record
     return raw.samples * np.array(scales)[:, None], quantities.pop()
 
 
-def _read_csv(path: Path) -> _Raw:
-    try:
-        text = path.read_text("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(
-            f"{path}: is not text; records are CSV, WAV, UFF 58 or miniSEED files"
-        ) from None
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    if len(lines) < 2:
-        raise InputError(f"{path}: holds no samples")
-    delimiter = next((mark for mark in (";", "\t", ",") if mark in lines[0]), " ")
-    rows = csv.reader(lines, delimiter=delimiter, skipinitialspace=True)
-    first = next(rows) if delimiter != " " else _WORDS.findall(lines[0])
-    heading = not all(map(_is_number, first))
-    body = lines[1:] if heading else lines
-    decimal = any("," in line for line in body) and (delimiter != "," or '"' in body[0])
-    table = _numbers(
-        body, delimiter, len(first), path, first_line=2 if heading else 1, comma=decimal
-    )
-    names, units = zip(*(_heading(h, i, heading=heading) for i, h in enumerate(first)), strict=True)
-    has_time = heading and bool(_TIME.match(first[0])) and len(first) > 1
-    if len(table) < 2:
-        raise InputError(f"{path}: holds one sample")
-    if not has_time:
-        rising = np.diff(table[:, 0])
-        if len(first) > 1 and np.all(rising > 0.0) and np.ptp(rising) < 0.1 * rising.mean():
-            raise InputError(
-                f"{path}: its first column, {names[0]!r}, rises evenly as time does; give it the "
-                "heading 'time [s]', or leave it out"
-            )
-        return _Raw(samples=table.T.copy(), rate=None, names=names, units=units)
-    scale = to_si(f"1 {units[0]}", "time") if units[0] else 1.0
-    rate = _even_rate(scale * table[:, 0], path)
-    return _Raw(samples=table[:, 1:].T.copy(), rate=rate, names=names[1:], units=units[1:])
-
-
-def _numbers(
-    lines: Sequence[str], delimiter: str, width: int, path: Path, *, first_line: int, comma: bool
-) -> Array:
-    """Return the table; empty cells and words become not-a-number, which a record refuses."""
-    out = np.full((len(lines), width), np.nan)
-    try:
-        rows = list(csv.reader(lines, delimiter=delimiter, skipinitialspace=True))
-    except csv.Error as error:
-        raise InputError(f"{path}: cannot be read as a table ({error})") from None
-    for i, row in enumerate(rows):
-        cells = [cell for cell in row if cell or delimiter != " "]
-        if len(cells) != width:
-            raise InputError(
-                f"{path}: line {first_line + i} has {len(cells)} columns, the first has {width}"
-            )
-        for j, cell in enumerate(cells):
-            number = cell.replace(",", ".") if comma else cell
-            with suppress(ValueError):
-                out[i, j] = float(number)
-    return out
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text.replace(",", "."))
-    except ValueError:
-        return False
-    return True
-
-
-def _heading(text: str, column: int, *, heading: bool) -> tuple[str, str]:
-    if not heading:
-        return f"channel {column + 1}", ""
-    match = _HEADING.match(text)
-    if match is None:
-        return text.strip() or f"channel {column + 1}", ""
-    unit = match["square"] or match["round"]
-    return match["name"].strip() or f"channel {column + 1}", unit.strip()
-
-
-def _even_rate(time: Array, path: Path) -> float:
-    """Return the sampling rate of time stamps, which must be even."""
-    if not np.isfinite(time).all():
-        at = int(np.argmin(np.isfinite(time)))
-        raise InputError(f"{path}: time stamp {at + 1} is not a number")
-    steps = np.diff(time)
-    if np.any(steps < 0.0) or time[-1] <= time[0]:
-        raise InputError(f"{path}: time does not rise; sort the record")
-    step = float((time[-1] - time[0]) / (len(time) - 1))
-    # Stamps are written with so many decimals: they stray by half of the last, and no more.
-    decimals = next((k for k in range(10) if np.allclose(time, np.round(time, k), atol=1e-12)), 10)
-    if np.abs(time - (time[0] + step * np.arange(len(time)))).max() > 10.0**-decimals + 0.01 * step:
-        usual = float(np.median(steps))
-        at = int(np.argmax(steps))
-        if steps[at] > 1.5 * usual + 2.0 * 10.0**-decimals:
-            raise InputError(
-                f"{path}: gaps in time; the widest after {time[at]:.6g} s ({steps[at]:.4g} s "
-                f"instead of {usual:.4g} s); cut the record there"
-            )
-        raise InputError(f"{path}: time steps vary from {steps.min():.4g} to {steps.max():.4g} s")
-    return 1.0 / step
-
-
-def _read_wav(path: Path) -> _Raw:
+def _read_wav(path: Path) -> RawRecord:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", wavfile.WavFileWarning)  # chunks of other programs
@@ -257,7 +143,7 @@ def _read_wav(path: Path) -> _Raw:
             128.0 if data.dtype == np.uint8 else -float(np.iinfo(data.dtype).min)
         )
     names = tuple(f"channel {i + 1}" for i in range(len(data)))
-    return _Raw(
+    return RawRecord(
         samples=data.astype(float),
         rate=float(rate),
         names=names,
@@ -266,7 +152,7 @@ def _read_wav(path: Path) -> _Raw:
     )
 
 
-def _read_uff(path: Path) -> _Raw:
+def _read_uff(path: Path) -> RawRecord:
     try:
         import pyuff  # noqa: PLC0415 - an extra
     except ImportError:
@@ -280,10 +166,10 @@ def _read_uff(path: Path) -> _Raw:
     if not found:
         raise InputError(f"{path}: holds no time record (dataset 58, function type 1)")
     times, rates = [np.asarray(one["x"], float) for one in found], set[float]()
-    rates = {round(_even_rate(time, path), 6) for time in times}
+    rates = {round(even_rate(time, path), 6) for time in times}
     if len(rates) > 1 or len({len(time) for time in times}) > 1:
         raise InputError(f"{path}: its channels differ in rate or length; assess them apart")
-    return _Raw(
+    return RawRecord(
         samples=np.array([one["data"] for one in found], dtype=float),
         rate=rates.pop(),
         names=tuple(_uff_name(one, i) for i, one in enumerate(found)),
@@ -303,7 +189,7 @@ def _uff_unit(one: dict[str, object]) -> str:
     return _UFF_ORDINATE.get(code, "") if isinstance(code, int) else ""
 
 
-def _read_miniseed(path: Path) -> _Raw:
+def _read_miniseed(path: Path) -> RawRecord:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # its imports use what Python is about to drop
@@ -322,7 +208,7 @@ def _read_miniseed(path: Path) -> _Raw:
         raise InputError(f"{path}: gaps in {', '.join(gaps)}; cut the record there")
     if len({(trace.stats.sampling_rate, len(trace.data)) for trace in stream}) > 1:
         raise InputError(f"{path}: its channels differ in rate or length; assess them apart")
-    return _Raw(
+    return RawRecord(
         samples=np.array([trace.data for trace in stream], dtype=float),
         rate=float(stream[0].stats.sampling_rate),
         names=tuple(trace.id for trace in stream),

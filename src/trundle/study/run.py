@@ -10,6 +10,7 @@ import numpy as np
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes
 from trundle.errors import FitnessWarning
+from trundle.response import few_runs_warnings, level_warnings
 from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
 from trundle.structure import Floor
 from trundle.study.cells import Cell, CellKey
@@ -58,6 +59,13 @@ class StudyResult:
         by_method: dict[str, dict[FitnessWarning, None]] = {}
         for key, cell in self.cells.items():
             by_method.setdefault(key.method, {}).update(dict.fromkeys(cell.warnings))
+        assessment = self.study.assessment
+        if assessment is not None and assessment.method in by_method:
+            doubts = (
+                *level_warnings(assessment.averaging, self.study.duration),
+                *few_runs_warnings(self.study.runs, assessment.percentile),
+            )
+            by_method[assessment.method].update(dict.fromkeys(doubts))
         return {method: tuple(found) for method, found in by_method.items()}
 
 

@@ -83,7 +83,7 @@ def test_a_map_at_another_speed_is_that_of_its_own_study(tmp_path):
 
 def test_every_node_at_every_step_is_what_a_point_there_gives(tmp_path):
     """The map of all nodes of the mesh; the default rule as exact there as a history."""
-    exact = '\n[map]\nplaces = "nodes"\nevery_step = true\ncriterion = "VC-A"\n'
+    exact = '\n[map]\nplaces = "nodes"\nevery_step = true\npeaks = true\ncriterion = "VC-A"\n'
     study = study_of(tmp_path, LONG + exact)
     nodes = study.floor.nodes
     level = nodes[np.abs(nodes[:, 2]) < 1e-9][:, :2]
@@ -95,6 +95,9 @@ def test_every_node_at_every_step_is_what_a_point_there_gives(tmp_path):
     (at,) = np.flatnonzero(np.abs(study.map.places - [3.0, 3.0]).sum(axis=1) < 1e-9)
     # single precision, and a record that ends before the lowest bands are at rest
     assert mapped.classes.margin[0, at] == pytest.approx(verdict.margin, rel=1e-4)
+    (cell,) = result.cells.values()
+    expected = np.percentile(cell.peak_acceleration[:, 0], 95.0)
+    assert mapped.peak_acceleration[at] == pytest.approx(expected, rel=1e-3)
 
 
 def test_traffic_is_mapped_when_asked_for(tmp_path):

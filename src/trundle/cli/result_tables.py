@@ -131,7 +131,7 @@ def _print_verdicts(result: StudyResult) -> None:
             (
                 title,
                 *(
-                    v.status if np.isnan(v.margin) else f"{v.status} {v.margin:.2f}"
+                    v.status if np.isnan(v.margin) else f"{v.status} {v.margin:.3g}"
                     for v in verdicts
                 ),
             )

@@ -88,4 +88,4 @@ class Verdict:
     def __str__(self) -> str:
         """State the verdict in one line."""
         at = "" if np.isnan(self.governing_band) else f" at {self.governing_band:.3g} Hz"
-        return f"{self.point}, {self.criterion.title}: {self.status}, margin {self.margin:.2f}{at}"
+        return f"{self.point}, {self.criterion.title}: {self.status}, margin {self.margin:.3g}{at}"

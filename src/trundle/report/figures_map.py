@@ -17,9 +17,15 @@ from trundle.report.canvas import COLOURS, new_figure
 from trundle.report.map_data import MapView, class_scale
 from trundle.study.maps import MapPlan
 from trundle.study.model import Study
-from trundle.units import MICROMETRE_PER_SECOND
+from trundle.units import GAL, MICROMETRE_PER_SECOND
 
-__all__ = ["class_map_figure", "criterion_map_figure", "rms_map_figure", "share_map_figure"]
+__all__ = [
+    "class_map_figure",
+    "criterion_map_figure",
+    "peak_map_figure",
+    "rms_map_figure",
+    "share_map_figure",
+]
 
 _COLUMNS = 4
 
@@ -92,10 +98,21 @@ def share_map_figure(study: Study, views: list[MapView]) -> Figure:
 
 def rms_map_figure(study: Study, views: list[MapView]) -> Figure:
     """Draw the RMS velocity over the record at every place of every view."""
+    levels = [view.rms_velocity / MICROMETRE_PER_SECOND for view in views]
+    return _level_figure(study, views, levels, "record RMS velocity [um/s]")
+
+
+def peak_map_figure(study: Study, views: list[MapView]) -> Figure:
+    """Draw the peak acceleration at every place of every view."""
+    levels = [view.peak_acceleration / GAL for view in views]
+    return _level_figure(study, views, levels, "peak acceleration [gal]")
+
+
+def _level_figure(study: Study, views: list[MapView], levels: list[Array], label: str) -> Figure:
+    """Draw levels on one logarithmic scale."""
     plan = study.map
     assert plan is not None  # there are views
     figure, panels = _panels(study, views)
-    levels = [view.rms_velocity / MICROMETRE_PER_SECOND for view in views]
     low, high = (float(take([take(level) for level in levels])) for take in (np.min, np.max))
     norm = LogNorm(low, high)
     image = None
@@ -103,7 +120,7 @@ def rms_map_figure(study: Study, views: list[MapView]) -> Figure:
         image = _image(panel, study, plan, level, view.routes, cmap="cividis_r", norm=norm)
     if image is not None:
         bar = _bar(figure, image, panels)
-        bar.set_label("record RMS velocity [um/s]")
+        bar.set_label(label)
         ticks = [float(f"{v:.2g}") for v in np.geomspace(low, high, 6)[1:-1]]
         bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
         bar.ax.minorticks_off()

@@ -253,6 +253,11 @@ def _map_figures(result: StudyResult) -> Iterator[Drawing]:
         Picture(name="map_rms", title="RMS velocity over the floor", caption=about),
         lambda: figures_map.rms_map_figure(result.study, views),
     )
+    if plan.peaks:
+        yield (
+            Picture(name="map_peak", title="Peak acceleration over the floor", caption=about),
+            lambda: figures_map.peak_map_figure(result.study, views),
+        )
 
 
 def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:

@@ -159,16 +159,18 @@ def _problems(given: _Checked) -> Iterator[Problem]:
 def _plan(given: _Checked) -> MapPlan:
     section, names = given.section, given.curves
     x, y = given.lines()
+    criteria = tuple(c for c in given.assessment.criteria if c.quantity in _MAPPED)
     return MapPlan(
         x=x,
         y=y,
         runs=given.runs,
-        criteria=tuple(c for c in given.assessment.criteria if c.quantity in _MAPPED),
+        criteria=criteria,
         criterion=section.criterion or ("VC-B" if "VC-B" in names else names[-1]),
         percentile=given.assessment.percentile,
         averaging=given.assessment.averaging,  # pyright: ignore[reportArgumentType] - checked
         traffic=section.traffic,
         every_step=section.every_step,
+        peaks=section.peaks or any(c.quantity == "peak_acceleration" for c in criteria),
         speeds=tuple(sorted(set(section.speeds))),
     )
 

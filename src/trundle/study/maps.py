@@ -44,6 +44,8 @@ class MapPlan:
         Whether several vehicles at once are mapped too; they take as long as all of them.
     every_step : bool
         Whether the largest 1 s is looked for at every time step, see `floor_map`.
+    peaks : bool
+        Whether peak accelerations are mapped too; they take half as long again.
     speeds : tuple of float
         Constant speeds of every vehicle that are mapped beside those of the study [m/s].
     """
@@ -56,18 +58,14 @@ class MapPlan:
     percentile: float
     averaging: Averaging
     traffic: bool
-    every_step: bool = False
-    speeds: tuple[float, ...] = ()
+    every_step: bool
+    peaks: bool
+    speeds: tuple[float, ...]
 
     @property
     def places(self) -> Float[Array, "places 2"]:
         """Return the places in plan, x running fastest [m]."""
         return np.stack(np.meshgrid(self.x, self.y), axis=-1).reshape(-1, 2)
-
-    @property
-    def peaks(self) -> bool:
-        """Whether a criterion asks for peak accelerations."""
-        return any(criterion.quantity == "peak_acceleration" for criterion in self.criteria)
 
 
 @dataclass(frozen=True)

@@ -272,6 +272,7 @@ class MapSection(Section):
     traffic: Flag = False
     speeds: Annotated[tuple[Speed, ...], Field(max_length=20)] = ()
     every_step: Flag = False
+    peaks: Flag = False
 
 
 class PrintedSection(Section):

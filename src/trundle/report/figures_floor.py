@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator
 from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
@@ -148,7 +149,7 @@ def mesh_figure(floor: Floor) -> Figure:
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2] + 1e-3))
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     axes.set_box_aspect(np.maximum(high - low, 1.0))
-    axes.set_zticks([low[2], 0.0, high[2]] if high[2] > 0.0 > low[2] else [low[2]])
+    axes.zaxis.set_major_locator(FixedLocator(sorted({float(low[2]), 0.0, float(high[2])})))
     axes.view_init(elev=24.0, azim=-122.0)
     axes.text2D(
         0.02,

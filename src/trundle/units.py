@@ -123,6 +123,8 @@ def _factor(unit: str, unit_si: str, dimension: str, example: str) -> float:
         raise InputError(f"a {dimension} counts cycles, not radians; divide by 2 pi: {example!r}")
     spelled = unit.replace("·", "*").replace("²", "**2").replace("³", "**3").replace("^", "**")
     spelled = _POWER.sub(r"**\1", spelled)
+    if dimension == "acceleration":
+        spelled = _GRAVITY.sub(r"\g<prefix>standard_gravity", spelled)
     try:
         units = registry.parse_units(spelled)
         allowed = _COUNTED.get(dimension)
@@ -176,17 +178,22 @@ def motion_scale(
     """
     registry, _ = _registry()
     quantity = _parsed(unit, registry)
+    kinds: tuple[tuple[str, Literal["acceleration", "velocity"]], ...] = (
+        ("m/s**2", "acceleration"),
+        ("m/s", "velocity"),
+    )
     if sensitivity:
+        if any(quantity.is_compatible_with(si) for si, _ in kinds):
+            raise InputError(
+                f"{unit!r} is motion already, and a sensitivity of {sensitivity!r} is for volts or "
+                "counts; leave one out"
+            )
         divisor = _parsed(sensitivity, registry)
         if not divisor.magnitude > 0.0:
             raise InputError(f"sensitivity {sensitivity!r} must be greater than 0")
         quantity = quantity / divisor
     if not quantity.magnitude > 0.0:
         raise InputError(f"{unit!r} must be greater than 0")
-    kinds: tuple[tuple[str, Literal["acceleration", "velocity"]], ...] = (
-        ("m/s**2", "acceleration"),
-        ("m/s", "velocity"),
-    )
     for si, kind in kinds:
         if quantity.is_compatible_with(si):
             return float(f"{quantity.to(si).magnitude:.12g}"), kind

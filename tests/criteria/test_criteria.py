@@ -160,6 +160,9 @@ def test_limits_of_equipment_and_people():
     assert limits["VDV-residential-night-low"] == pytest.approx(0.5 * 0.4)
     assert limits["VDV-office-low"] == pytest.approx(2 * 0.4)
     assert limits["VDV-workshop-low"] == pytest.approx(4 * 0.4)
+    for kind, factor in (("residential-night", 0.5), ("office", 2.0), ("workshop", 4.0)):
+        for probability, day in (("possible", 0.8), ("probable", 1.6)):
+            assert limits[f"VDV-{kind}-{probability}"] == pytest.approx(factor * day)
 
 
 def test_a_verdict_stands_band_by_band():

@@ -29,6 +29,23 @@ def test_motion_behind_an_isolator_is_that_of_its_equation():
     np.testing.assert_allclose(both.real, found, atol=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("frequency", "zeta"), [(2.0, 0.05), (10.0, 0.1), (40.0, 0.05), (3.0, 0.0)]
+)
+@pytest.mark.parametrize("fs", [200.0, 1000.0])
+def test_steady_motion_behind_an_isolator_is_its_transmissibility(frequency, zeta, fs):
+    """From the isolator's own frequency to 80 Hz at a step of 5 ms: within 0.3 % of the closed form."""
+    isolator = Isolator(frequency=frequency, damping_ratio=zeta)
+    t = np.arange(0, 60, 1 / fs)
+    ease = np.sin(np.pi * np.clip(t / 30, 0, 0.5)) ** 2  # so slow that next to nothing rings
+    for f in (0.5 * frequency, 1.5 * frequency, 20.0, 31.5, 50.0, 63.0, 80.0):
+        if abs(f - frequency) < 0.2 * frequency:
+            continue
+        steady = behind(isolator, ease * np.sin(2 * np.pi * f * t), fs)[int(30 * fs) : int(50 * fs)]
+        expected = np.abs(isolator.response(np.array([f])))[0]
+        assert np.sqrt(2 * np.mean(steady**2)) == pytest.approx(expected, rel=3e-3)
+
+
 def test_a_table_is_interpolated_and_held_at_its_ends():
     table = TransmissibilityTable(frequencies=np.array([1.0, 10.0]), ratios=np.array([1.0, 0.01]))
     f = np.array([0.2, 1.0, np.sqrt(10.0), 10.0, 50.0])

@@ -175,6 +175,8 @@ def test_the_command_writes_matrix_and_margins(tmp_path, monkeypatch, capsys, tr
     ("option", "value", "told"),
     [
         ("--speeds", "15 kg", "--speeds '15 kg'"),
+        ("--speeds", "0.001 km/h", "100000 are computed"),
+        ("--speeds", "1e9 km/h", "100000 are computed"),
         ("--roads", "Z", "must be one of A, B"),
         ("--slab", "2 mm", "20 mm to 3 m"),
         ("--damping", "0 %", "above 0"),

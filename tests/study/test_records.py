@@ -1,13 +1,14 @@
 """Measured records: made files with known levels, files that are refused or warned of by name."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.io import wavfile
 
-from trundle.criteria import VC, find_criterion
-from trundle.errors import InputError
+from trundle.criteria import VC, assess_reduced, find_criterion
+from trundle.errors import ComputationError, InputError
 from trundle.response import few_runs_warnings, level_warnings, percentile_interval
 from trundle.signals import Record, band_edges, mid_band_frequencies, motion_of
 from trundle.study.assess_record import assess_record
@@ -385,3 +386,139 @@ def test_a_percentile_of_few_runs_is_doubted():
     values = np.arange(72.0)
     assert np.isfinite(percentile_interval(values, 95.0)[1])
     assert np.isinf(percentile_interval(values[:71], 95.0)[1])
+
+
+def made(samples, quantity="velocity", fs=FS):
+    return Record(
+        samples=np.atleast_2d(samples), sampling_frequency=fs, quantity=quantity,
+        channel_names=("z",),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("f", [5.0, 30.0, 60.0])
+def test_steady_motion_has_no_slow_motion_of_its_ends(f):
+    """A cosine of acceleration that starts at its crest: 100 um/s at f, and nothing at 1 to 2 Hz."""
+    t = np.arange(0, 30, 1 / FS)
+    peak = 100e-6
+    record = made(peak * 2 * np.pi * f * np.cos(2 * np.pi * f * t), "acceleration")
+    result = assess_record(record, VC)
+    low = result.reduced.spectra.values[0, 0, :4]
+    assert low.max() < 1e-3 * peak
+    assert result.reduced.rms_velocity[0, 0] == pytest.approx(peak / np.sqrt(2), rel=1e-3)
+
+
+def test_slow_wander_is_no_velocity():
+    """0.001 m/s2 that wanders in 25 s is 4 mm/s if integrated; the tone beside it is 60 um/s."""
+    t = np.arange(0, 60, 1 / FS)
+    wander = 1e-3 * np.cos(2 * np.pi * 0.04 * t + 0.3)
+    tone = np.sqrt(2) * 60e-6 * 2 * np.pi * 10 * np.cos(2 * np.pi * 10 * t)
+    levels = assess_record(made(wander + tone, "acceleration"), VC).reduced.spectra.values[0, 0]
+    assert levels[10] == pytest.approx(60e-6, rel=0.01)
+    assert levels[:6].max() < 1e-6
+
+
+@pytest.mark.parametrize("averaging", ["max_1s", "event"])
+@pytest.mark.parametrize("k", [6, 8, 10, 13, 16])
+def test_steady_tones_are_no_louder_for_their_beginning(averaging, k):
+    """Tones from 4 Hz up that fill a record of 20 s: their RMS, within 0.2 dB, by either rule."""
+    t = np.arange(0, 20, 1 / FS)
+    tone = np.sqrt(2) * 1e-4 * np.sin(2 * np.pi * 10 ** (k / 10) * t + 0.7)
+    result = assess_record(made(tone), VC, averaging=averaging)
+    error = 20 * np.log10(result.reduced.spectra.values[0, 0, k] / 1e-4)
+    assert abs(error) < 0.2
+    assert result.reduced.rms_velocity[0, 0] == pytest.approx(1e-4, rel=2e-3)
+
+
+def test_what_loggers_do_to_records_is_named():
+    """A gap filled with zeros or one value, a single spike, rails hit seldom; none in sound records."""
+    rng = np.random.default_rng(1)
+    t = np.arange(0, 60, 1 / FS)
+    noise = 1e-4 * rng.standard_normal(len(t))
+    event = 1e-3 * np.exp(-(((t - 30) / 3) ** 2)) * np.sin(2 * np.pi * 8 * t)
+    for fill in (0.0, noise[8000]):
+        filled = noise.copy()
+        filled[8000:8200] = fill
+        assert "held, z" in subjects(filled)
+    spiky = noise.copy()
+    spiky[9000] = 0.1
+    assert "spikes, z" in subjects(spiky)
+    assert "clipped, z" in subjects(np.clip(noise, -2.5e-4, 2.5e-4))
+    sine = 1e-3 * np.sin(2 * np.pi * 100 * t)
+    assert "clipped, z" in subjects(np.clip(sine, -7e-4, 7e-4))
+    for sound in (noise, event, np.round(event / 1e-5) * 1e-5, np.round(noise / 3e-5) * 3e-5):
+        assert not {s.partition(",")[0] for s in subjects(sound)} & {"held", "spikes", "clipped"}
+
+
+def test_sizes_that_no_floor_reaches_are_refused():
+    with pytest.raises(InputError, match="which no floor does"):
+        made(1e150 * tones("velocity")[1])
+
+
+def test_levels_that_are_no_numbers_are_no_pass():
+    """A run that has overflowed stops the verdict, whatever the limit."""
+    record = made(tones("velocity")[1])
+    reduced = assess_record(record, VC).reduced
+    lost = replace(reduced.spectra, values=np.full_like(reduced.spectra.values, np.nan))
+    with pytest.raises(ComputationError, match="not a finite number"):
+        assess_reduced(replace(reduced, spectra=lost), VC, percentile=100.0, top=80.0)
+    loud = replace(reduced, response_factor=np.full_like(reduced.response_factor, np.inf))
+    with pytest.raises(ComputationError, match="not a finite number"):
+        assess_reduced(loud, find_criterion("R-office"), percentile=100.0, top=80.0)
+
+
+@pytest.mark.parametrize("start", [0.0, 1000.0, 1.7e9])
+def test_gaps_show_however_late_the_clock(tmp_path, start):
+    """0.8 s lost after an hour, or after half a century of stamps; 4 samples after 1000 s."""
+    for lost in (400, 8):
+        t, a = tones(fs=500.0, duration=12.0)
+        t = np.delete(t, slice(2000, 2000 + lost)) + start
+        a = np.delete(a, slice(2000, 2000 + lost))
+        with pytest.raises(InputError, match="gaps in time"):
+            read_record(write_csv(tmp_path / "r.csv", t, a), NO_OPTIONS)
+    t, a = tones(fs=500.0, duration=12.0)
+    record = read_record(write_csv(tmp_path / "r.csv", t + start, a), NO_OPTIONS)
+    assert record.sampling_frequency == pytest.approx(500.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("heading", ["time_ms", "Time ms", "t_ms", "time [ms]"])
+def test_units_of_time_behind_its_heading(tmp_path, heading):
+    t, a = tones(duration=10.0)
+    path = write_csv(tmp_path / "r.csv", 1e3 * t, a, heading=f"{heading},z [mm/s2]")
+    assert read_record(path, NO_OPTIONS).sampling_frequency == pytest.approx(FS)
+
+
+def test_options_that_do_not_apply_are_refused(tmp_path, monkeypatch, capsys, trundle):
+    monkeypatch.chdir(tmp_path)
+    t, a = tones(duration=10.0)
+    write_csv(tmp_path / "r.csv", t, a)
+    for options, told in (
+        (("--sensitivity", "100"), "is motion already"),
+        (("--point", "tool"), "--simulation"),
+        (("--high-pass", "1e-9 Hz"), "0.05 Hz"),
+        (("--shape", "round"), "--shape must be one of"),
+    ):
+        assert trundle("assess", "r.csv", *options) == 2
+        assert told in capsys.readouterr().err
+    assert trundle("assess", str(tmp_path)) == 2
+    assert "is a folder" in capsys.readouterr().err
+    wavfile.write(tmp_path / "r.wav", int(FS), a.astype(np.float32))
+    assert trundle("assess", "r.wav", "--full-scale", "2 m/s2", "--unit", "mm/s2") == 2
+    assert "leave --unit out" in capsys.readouterr().err
+    assert trundle("assess", "--help") == 0
+    assert "time [s], z [mm/s2]" in " ".join(capsys.readouterr().out.split())
+
+
+def test_generic_curves_may_be_flat(tmp_path, monkeypatch, trundle):
+    """VC-A allows 100 um/s at 4 Hz where it rises, and 50 um/s on pneumatic isolation."""
+    monkeypatch.chdir(tmp_path)
+    t = np.arange(0, 60, 1 / FS)
+    np.savetxt(
+        "r.csv", np.stack([t, np.sqrt(2) * 75 * np.sin(2 * np.pi * 10**0.6 * t)], axis=1),
+        delimiter=",", header="time [s],z [um/s]", comments="",
+    )  # fmt: skip
+    for shape, verdict in (("rising", "pass"), ("flat", "fail")):
+        options = ("-c", "VC-A,VC-C", "--shape", shape, "--out", shape)
+        assert trundle("assess", "r.csv", *options) == 0
+        summary = json.loads((tmp_path / shape / "summary.json").read_text())
+        found = {v["criterion"]: v["verdict"] for v in summary["verdicts"]}
+        assert found == {"VC-A": verdict, "VC-C": "fail"}

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from test_bad_input import GOOD
 
+from trundle.criteria import find_criterion
 from trundle.errors import InputError, StudyError
 from trundle.study import load_study
 from trundle.study.run import run_study
@@ -39,6 +40,25 @@ def test_curves_come_with_their_units(tmp_path):
     assert (curve.name, curve.title) == ("stage", "Maker B, stage")
     np.testing.assert_allclose(curve.limits, [50e-6, 25e-6, 25e-6])
     np.testing.assert_allclose(curve.frequencies, [1, 8, 80])
+
+
+def test_units_of_data_sheets(tmp_path):
+    """g is gravity in a limit of acceleration; a dose has a unit of its own."""
+    text = "# quantity = band_rms_acceleration\nfrequency [Hz], limit [mg]\n1, 2\n80, 4\n"
+    (curve,) = read_criteria(written(tmp_path, "g.csv", text))
+    np.testing.assert_allclose(curve.limits, [2 * 9.80665e-3, 4 * 9.80665e-3])
+    for unit in ("m/s^1.75", "1"):
+        text = f"# quantity = vdv\nfrequency [Hz], limit [{unit}]\n1, 0.5\n80, 0.5\n"
+        (curve,) = read_criteria(written(tmp_path, "dose.csv", text))
+        np.testing.assert_allclose(curve.limits, 0.5)
+
+
+def test_generic_curves_of_a_study_may_be_flat(tmp_path):
+    text = GOOD.replace('["VC-A"]', '["VC-A", "VC-C", "NIST-A"]\nshape = "flat"')
+    flat, low, other = load_study(written(tmp_path, "s.toml", text)).assessment.criteria
+    np.testing.assert_allclose(flat.limit(np.array([1.0, 4.0, 8.0, 80.0])), 50e-6)
+    np.testing.assert_allclose(low.limit(np.array([1.0, 80.0])), 12.5e-6, rtol=1e-2)
+    np.testing.assert_allclose(other.limits, find_criterion("NIST-A").limits)
 
 
 @pytest.mark.parametrize(

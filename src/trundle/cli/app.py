@@ -52,7 +52,7 @@ def run(
     study: StudyPath,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="Results folder. [default: STUDY's name + '-results']"),
+        typer.Option("--out", "-o", help="Results folder. \\[default: STUDY's name + '-results']"),
     ] = None,
     workers: Annotated[
         int | None,
@@ -104,9 +104,12 @@ def assess(
         typer.Option(
             "--criteria",
             "-c",
-            help="Names and files (TOML, CSV) between commas. [default: workshop to VC-E]",
+            help="Names and files (TOML, CSV) between commas. \\[default: workshop to VC-E]",
         ),
     ] = "",
+    shape: Annotated[
+        str, typer.Option("--shape", help="Generic curves below 8 Hz: rising, or flat to 1 Hz.")
+    ] = "rising",
     averaging: Annotated[
         str, typer.Option("--averaging", help="max_1s, slow, fast or event.")
     ] = "max_1s",
@@ -121,18 +124,18 @@ def assess(
         typer.Option("--simulation", help="Results folder of a study, to lay the record over."),
     ] = None,
     point: Annotated[
-        str | None, typer.Option("--point", help="Point of that study. [default: its first]")
+        str | None, typer.Option("--point", help="Point of that study. \\[default: its first]")
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="Results folder. [default: RECORD's name + '-results']"),
+        typer.Option("--out", "-o", help="Results folder. \\[default: RECORD's name + '-results']"),
     ] = None,
 ) -> None:
-    """Assess measured records against the same criteria, with the same levels and figures.
+    r"""Assess measured records against the same criteria, with the same levels and figures.
 
-    A CSV heading such as 'time [s], z [mm/s2]' says all; else --unit and --rate do. A record that
-    cannot be right (gaps, numbers missing, two rates) is refused; one that is clipped, short, slow
-    or cut off in motion is assessed with a warning.
+    A CSV heading such as 'time \[s], z \[mm/s2]' says all; else --unit and --rate do. A record
+    that cannot be right (gaps, numbers missing, two rates) is refused; one that is clipped, short,
+    slow or cut off in motion is assessed with a warning.
     """
     from trundle.cli import assess_command
     from trundle.study.read_record import RecordOptions
@@ -142,6 +145,7 @@ def assess(
         files,
         options,
         criteria=criteria,
+        shape=shape,
         averaging=averaging,
         high_pass=high_pass,
         events=events,
@@ -173,7 +177,7 @@ def mitigate(
     runs: Annotated[int, typer.Option("--runs", min=1, max=10_000, help="Runs of each.")] = 60,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="Results folder. [default: STUDY-mitigation-results]"),
+        typer.Option("--out", "-o", help="Results folder. \\[default: STUDY-mitigation-results]"),
     ] = None,
 ) -> None:
     """Try what would help: speed, road class, vehicle, slab, damping, isolator.

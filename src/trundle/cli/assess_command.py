@@ -9,7 +9,7 @@ import numpy as np
 
 from trundle._checks import one_of
 from trundle.cli.screen import print_table
-from trundle.criteria import VC, Criterion, find_criterion
+from trundle.criteria import VC, Criterion, Shape, find_criterion, shaped
 from trundle.errors import InputError
 from trundle.report import record_rows, write_record_report
 from trundle.signals import Averaging
@@ -27,6 +27,7 @@ def assess(
     options: RecordOptions,
     *,
     criteria: str,
+    shape: str,
     averaging: str,
     high_pass: str,
     events: float,
@@ -36,7 +37,10 @@ def assess(
 ) -> None:
     """Assess records one by one; write a results folder for each."""
     rule: Averaging = one_of("--averaging", averaging, get_args(Averaging))  # pyright: ignore
-    curves = _curves(criteria)
+    one_of("--shape", shape, get_args(Shape))
+    curves = shaped(_curves(criteria), shape)  # pyright: ignore[reportArgumentType] - checked
+    if point is not None and simulation is None:
+        raise InputError("--point names a point of a study: say which by --simulation")
     limit = to_si(high_pass, "frequency")
     if out is not None and len(files) > 1:
         raise InputError("--out names the folder of one record; leave it out for several")
@@ -45,7 +49,9 @@ def assess(
         raise InputError("two records would have one results folder; assess them apart with --out")
     for place in places:
         check_target(place)
-    simulated = () if simulation is None else read_simulated(simulation, point=point)
+    simulated = (
+        () if simulation is None else read_simulated(simulation, point=point, averaging=rule)
+    )
     records = [read_record(file, options) for file in files]
     for record, place in zip(records, places, strict=True):
         result = assess_record(

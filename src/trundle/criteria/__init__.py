@@ -7,8 +7,10 @@ from trundle.criteria.curve import (
     VC,
     Criterion,
     Quantity,
+    Shape,
     all_criteria,
     find_criterion,
+    shaped,
 )
 from trundle.criteria.verdict import BandOutcomes, Status, Verdict
 
@@ -19,6 +21,7 @@ __all__ = [
     "ClassMap",
     "Criterion",
     "Quantity",
+    "Shape",
     "Status",
     "Verdict",
     "all_criteria",
@@ -28,5 +31,6 @@ __all__ = [
     "class_map",
     "envelope_of",
     "find_criterion",
+    "shaped",
     "spectra_asked_for",
 ]

@@ -11,6 +11,7 @@ from trundle._checks import within
 from trundle._typing import Array
 from trundle.criteria.curve import BY_FREQUENCY, Criterion
 from trundle.criteria.verdict import BandOutcomes, Status, Verdict
+from trundle.errors import ComputationError
 from trundle.response import BandSpectra, Reduced, SpectrumQuantity, reduce_runs
 from trundle.signals import Averaging, nominal_frequency
 from trundle.simulate import Runs
@@ -144,6 +145,7 @@ def _by_band(
     usable = asked & spectra.resolved
     values = spectra.values[:, point]
     missing = _missing(spectra, criterion, asked)
+    _refuse_non_finite(values[:, usable], criterion, name)
     level = np.full(len(limits), np.nan)
     known = spectra.resolved
     level[known] = np.percentile(values[:, known], percentile, axis=0)
@@ -184,6 +186,15 @@ def _by_band(
     )
 
 
+def _refuse_non_finite(levels: Array, criterion: Criterion, point: str) -> None:
+    """Stop at a level that is no number: it compares as met with any limit."""
+    if not np.isfinite(levels).all():
+        raise ComputationError(
+            f"the level at {point!r} for {criterion.name} is not a finite number; the motion there "
+            "has overflowed"
+        )
+
+
 def _missing(spectra: BandSpectra, criterion: Criterion, asked: Array) -> tuple[float, ...]:
     """Return nominal frequencies that the curve asks for and nobody computed."""
     lost = spectra.mid_band[asked & ~spectra.resolved]
@@ -211,6 +222,7 @@ def _by_number(
     top: float,
 ) -> Verdict:
     limit = float(criterion.limits[0])
+    _refuse_non_finite(values, criterion, point)
     value = float(np.percentile(values, percentile))
     margin = limit / max(value, np.finfo(float).tiny)
     # A broadband number covers the curve only as far as the computation reaches.

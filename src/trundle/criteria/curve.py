@@ -18,7 +18,16 @@ from trundle.errors import InputError
 from trundle.response import SpectrumQuantity
 from trundle.signals import mid_band_frequencies
 
-__all__ = ["BY_FREQUENCY", "VC", "Criterion", "Quantity", "all_criteria", "find_criterion"]
+__all__ = [
+    "BY_FREQUENCY",
+    "VC",
+    "Criterion",
+    "Quantity",
+    "Shape",
+    "all_criteria",
+    "find_criterion",
+    "shaped",
+]
 
 Quantity: TypeAlias = SpectrumQuantity | Literal["peak_acceleration", "response_factor", "vdv"]
 """What a curve limits: RMS velocity, acceleration or displacement in one-third-octave bands;
@@ -30,6 +39,10 @@ BY_FREQUENCY: tuple[str, ...] = get_args(SpectrumQuantity)
 
 _SINGLE = ("peak_acceleration", "response_factor", "vdv")
 _FILES = ("vc.toml", "acceleration.toml", "equipment.toml", "people.toml")
+
+
+Shape: TypeAlias = Literal["rising", "flat"]
+"""What generic curves do below 8 Hz: rise towards 4 Hz, or stay as they are down to 1 Hz."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -102,6 +115,16 @@ class Criterion:
         outside = np.concatenate([mid_band_frequencies(-10, -1), mid_band_frequencies(20, 23)])
         return outside[np.isfinite(self.limit(outside))]
 
+    @property
+    def rises(self) -> bool:
+        """Whether it is a generic curve whose limit of 8 Hz is doubled towards 4 Hz."""
+        ends = self.limit(np.array([4.0, 8.0]))
+        return bool(
+            self.quantity == "band_rms_velocity"
+            and np.isclose(self.frequencies[0], 4.0)
+            and np.isclose(ends[0], 2.0 * ends[1])
+        )
+
     def flattened(self) -> Criterion:
         """Return the curve with its value at 8 Hz held constant down to 1 Hz.
 
@@ -114,6 +137,20 @@ class Criterion:
             frequencies=np.array([1.0, self.frequencies[-1]]),
             limits=np.array([level, level]),
         )
+
+
+def shaped(criteria: Iterable[Criterion], shape: Shape) -> tuple[Criterion, ...]:
+    """Return criteria with the generic curves that rise below 8 Hz as they are, or flat.
+
+    Parameters
+    ----------
+    criteria : iterable of Criterion
+        The curves.
+    shape : {"rising", "flat"}
+        ``flat`` for equipment on pneumatic isolation.
+    """
+    one_of("shape", shape, get_args(Shape))
+    return tuple(c.flattened() if shape == "flat" and c.rises else c for c in criteria)
 
 
 @cache

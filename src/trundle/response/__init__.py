@@ -4,7 +4,7 @@ from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
 from trundle.response.floor_map import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
 from trundle.response.level_warnings import few_runs_warnings, level_warnings
-from trundle.response.measured import runs_of_record, without_short_bands
+from trundle.response.measured import as_if_not_faded, runs_of_record, without_short_bands
 from trundle.response.peaks import Process, peak_levels
 from trundle.response.reduction import (
     Reduced,
@@ -29,6 +29,7 @@ __all__ = [
     "Reduced",
     "SpectrumQuantity",
     "UpperBounds",
+    "as_if_not_faded",
     "behind_isolators",
     "exact_statistics",
     "few_runs_warnings",

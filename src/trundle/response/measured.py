@@ -8,10 +8,10 @@ import numpy as np
 
 from trundle.response.reduction import Reduced
 from trundle.response.spectra import BandSpectra
-from trundle.signals import Record, motion_of, record_warnings
+from trundle.signals import Averaging, Record, lost_by_fading, motion_of, record_warnings
 from trundle.simulate import Runs
 
-__all__ = ["runs_of_record", "without_short_bands"]
+__all__ = ["as_if_not_faded", "runs_of_record", "without_short_bands"]
 
 
 def runs_of_record(record: Record, *, high_pass: float = 0.5) -> Runs:
@@ -54,3 +54,32 @@ def without_short_bands(reduced: Reduced, record: Record) -> Reduced:
 
     more = {name: held(spectra) for name, spectra in reduced.more.items()}
     return replace(reduced, spectra=held(reduced.spectra), more=more)
+
+
+def as_if_not_faded(
+    reduced: Reduced, record: Record, averaging: Averaging, *, high_pass: float = 0.5
+) -> Reduced:
+    """Return averages over the record as they would be had it not been faded in and out.
+
+    Parameters
+    ----------
+    reduced : Reduced
+        Levels of the faded record.
+    record : Record
+        The record.
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule of the levels.
+    high_pass : float
+        Frequency below which motion is taken for drift [Hz].
+    """
+    rms, dose = lost_by_fading(record, high_pass=high_pass)
+    found = replace(reduced, rms_velocity=reduced.rms_velocity * rms, vdv=reduced.vdv * dose)
+    if averaging != "event":
+        return found
+
+    def louder(spectra: BandSpectra) -> BandSpectra:
+        """Return levels averaged over what was not faded."""
+        return replace(spectra, values=spectra.values * rms[:, None])
+
+    more = {name: louder(spectra) for name, spectra in found.more.items()}
+    return replace(found, spectra=louder(found.spectra), more=more)

@@ -27,9 +27,10 @@ from trundle.signals.record import (
     Record,
     RecordQuantity,
     clipped_channels,
-    motion_of,
+    is_steady,
     record_warnings,
 )
+from trundle.signals.record_motion import lost_by_fading, motion_of
 from trundle.signals.weighting import (
     BASE_ACCELERATION,
     Weighting,
@@ -65,7 +66,9 @@ __all__ = [
     "crest_factor",
     "filter_bands",
     "filter_zero_phase",
+    "is_steady",
     "level_scatter",
+    "lost_by_fading",
     "mid_band_frequencies",
     "motion_of",
     "mtvv",

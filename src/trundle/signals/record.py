@@ -1,4 +1,4 @@
-"""Hold a measured record, find what is wrong with it, and turn it into motion without drift."""
+"""Hold a measured record, and find what is wrong with it."""
 
 from __future__ import annotations
 
@@ -7,20 +7,24 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from jaxtyping import Float
-from scipy import fft
 
 from trundle._checks import frozen_array, one_of, positive, set_frozen
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 
-__all__ = ["Record", "RecordQuantity", "clipped_channels", "motion_of", "record_warnings"]
+__all__ = ["Record", "RecordQuantity", "clipped_channels", "is_steady", "record_warnings"]
 
 RecordQuantity: TypeAlias = Literal["acceleration", "velocity"]
 """What a sensor measured."""
 
-_ORDER = 4  # of the high-pass filter
-_TAPER = 1.0  # s at both ends, at most a twentieth of the record
+_RAILS = 10  # samples at an extreme, that may be chance
+_CREST = 5.0  # times as many as at the level beside it
+_DROPOUT = 0.1  # s of one value in the middle of motion
+_LEAST_HELD = 8  # samples
+_SPIKE = 8.0  # times the RMS
+_IMPLAUSIBLE = 1e4  # m/s2 or m/s
 _FLAT = 3  # equal samples in a row at an extreme that count as clipped
+_STEADY = 3.0  # times the record's RMS, that no quarter second of steady motion reaches
 _QUIET = 0.2  # of the record's RMS: louder ends are not at rest
 _PERIODS = 8.0  # of a band's mid-frequency, that a record must hold to show it
 
@@ -69,6 +73,11 @@ class Record:
                 "1 s; give 2 s or more"
             )
         for name, row in zip(self.channel_names, samples, strict=True):
+            if float(np.abs(row).max()) > _IMPLAUSIBLE:
+                raise InputError(
+                    f"{self.source}: channel {name!r} reaches {np.abs(row).max():.3g} in SI units, "
+                    "which no floor does; mind its unit, scale or sensitivity"
+                )
             if np.ptp(row) == 0.0:
                 raise InputError(
                     f"{self.source}: channel {name!r} never moves; leave it out, or mend its cable"
@@ -87,12 +96,13 @@ class Record:
 
 
 def record_warnings(record: Record) -> tuple[FitnessWarning, ...]:
-    """Return the doubts about a record: clipped, too slow, too short, not at rest at its ends."""
-    found = [
-        *(w for name, row in _rows(record) for w in _clipped(name, row)),
-        *_range(record),
-        *(w for name, row in _rows(record) for w in _ends(name, row, record.sampling_frequency)),
-    ]
+    """Return the doubts about a record: clipped, held, spiky, slow, short, not at rest."""
+    fs = record.sampling_frequency
+    found = [w for name, row in _rows(record) for w in _clipped(name, row)]
+    for doubt in (_held, _spikes):
+        found += [w for name, row in _rows(record) for w in doubt(name, row, fs)]
+    found += _range(record)
+    found += [w for name, row in _rows(record) for w in _ends(name, row, fs)]
     return tuple(found)
 
 
@@ -102,34 +112,84 @@ def _rows(record: Record) -> zip[tuple[str, Array]]:
 
 def clipped_channels(record: Record) -> tuple[str, ...]:
     """Return the channels that were overloaded."""
-    return tuple(name for name, row in _rows(record) if _held(row))
+    return tuple(name for name, row in _rows(record) if _on_the_rails(row))
 
 
-def _held(row: Array) -> int:
-    """Return how many samples stand still at an extreme, where more do than nearby levels explain.
+def _on_the_rails(row: Array) -> int:
+    """Return how many samples stand at an extreme, where more do than nearby levels explain.
 
-    A quantised crest stands still too: over about as many samples at the level below it.
+    A quantised crest stands still too: over about as many samples at the level below it, or, of a
+    sine, 2.4 times as many.
     """
     levels = np.unique(row)
     total = 0
     for extreme, beside in ((levels[-1], levels[-2]), (levels[0], levels[1])):
-        at = (row == extreme).astype(np.int8)
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], at, [0]])))
-        lengths = edges[1::2] - edges[::2]
+        lengths = _run_lengths(row == extreme)
+        below = int(np.count_nonzero(row == beside))
         held = int(lengths[lengths >= _FLAT].sum())
-        if held > 3 * np.count_nonzero(row == beside):
+        if held > 3 * below:
             total += held
+        elif lengths.sum() > max(_RAILS, _CREST * below):
+            total += int(lengths.sum())
     return total
 
 
+def _run_lengths(flags: Array) -> Array:
+    """Return the lengths of the runs of True."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], flags.astype(np.int8), [0]])))
+    return edges[1::2] - edges[::2]
+
+
+def _held(name: str, row: Array, fs: float) -> list[FitnessWarning]:
+    """Doubt values that stand still in the middle of motion, as loggers fill gaps with them."""
+    same = np.concatenate([[False], np.diff(row) == 0.0, [False]])
+    edges = np.flatnonzero(np.diff(same.astype(np.int8)))
+    starts, lengths = edges[::2], edges[1::2] - edges[::2] + 1
+    width, centred = _quarter(fs), row - np.median(row)
+    usual = float(np.quantile(lengths, 0.9)) if len(lengths) > 10 else 1.0
+    loud = _QUIET * float(np.std(row))
+    for start, length in zip(starts, lengths, strict=True):
+        if length < max(_DROPOUT * fs, 5.0 * usual) or length < _LEAST_HELD:
+            continue
+        before, after = centred[max(0, start - width) : start], centred[start + length :][:width]
+        if min(len(before), len(after)) < 2 or min(np.std(before), np.std(after)) < loud:
+            continue
+        return [
+            FitnessWarning(
+                subject=f"held, {name}",
+                message=f"one value stands for {length / fs:.3g} s at {start / fs:.4g} s in the "
+                "middle of motion: a gap that the logger filled; cut the record there",
+            )
+        ]
+    return []
+
+
+def _spikes(name: str, row: Array, fs: float) -> list[FitnessWarning]:
+    """Doubt single samples far above all beside them: nothing that moves does that."""
+    size = np.abs(row - np.median(row))
+    high = np.flatnonzero(size > _SPIKE * np.sqrt(np.mean(size**2)))
+    high = high[(high >= 2) & (high < len(row) - 2)]
+    beside = np.max([size[high + k] for k in (-2, -1, 1, 2)], axis=0) if len(high) else high
+    at = high[beside < 0.1 * size[high]] if len(high) else high
+    if len(at) == 0:
+        return []
+    return [
+        FitnessWarning(
+            subject=f"spikes, {name}",
+            message=f"{len(at)} single samples stand far above all beside them, the first at "
+            f"{at[0] / fs:.4g} s: a fault of cable or logger, which raises every band",
+        )
+    ]
+
+
 def _clipped(name: str, row: Array) -> list[FitnessWarning]:
-    held = _held(row)
+    held = _on_the_rails(row)
     if held == 0:
         return []
     return [
         FitnessWarning(
             subject=f"clipped, {name}",
-            message=f"{held} samples stand still at the largest or smallest value: the sensor or "
+            message=f"{held} samples stand at the largest or smallest value: the sensor or "
             "its amplifier was overloaded, and the true levels are higher",
         )
     ]
@@ -158,14 +218,34 @@ def _range(record: Record) -> list[FitnessWarning]:
     return found
 
 
+def is_steady(row: Float[Array, " steps"], fs: float) -> bool:
+    """Return whether a channel moves alike throughout, so that any part of it is as good.
+
+    Parameters
+    ----------
+    row : ndarray of float, shape (n_steps,)
+        Samples of a channel.
+    fs : float
+        Samples per second [Hz].
+    """
+    return _loudest(row, fs) < _STEADY * float(np.std(row))
+
+
+def _loudest(row: Array, fs: float) -> float:
+    """Return the largest RMS over a quarter of a second."""
+    width = _quarter(fs)
+    energy = np.cumsum(np.concatenate([[0.0], (row - row.mean()) ** 2]))
+    return float(np.sqrt(np.max(energy[width:] - energy[:-width]) / width))
+
+
+def _quarter(fs: float) -> int:
+    return max(2, round(0.25 * fs))
+
+
 def _ends(name: str, row: Array, fs: float) -> list[FitnessWarning]:
-    width = max(2, round(0.25 * fs))
-    centred = row - row.mean()
-    whole = float(np.sqrt(np.mean(centred**2)))
-    energy = np.cumsum(np.concatenate([[0.0], centred**2]))
-    peak = float(np.sqrt(np.max(energy[width:] - energy[:-width]) / width))
-    if peak < 3.0 * whole:
-        return []  # steady motion, of which any part is as good
+    if is_steady(row, fs):
+        return []
+    width, centred, peak = _quarter(fs), row - row.mean(), _loudest(row, fs)
     ends = (("starts", centred[:width]), ("ends", centred[-width:]))
     return [
         FitnessWarning(
@@ -176,67 +256,3 @@ def _ends(name: str, row: Array, fs: float) -> list[FitnessWarning]:
         for what, part in ends
         if np.sqrt(np.mean(part**2)) > _QUIET * peak
     ]
-
-
-def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, Array]:
-    """Return displacement, velocity and acceleration of a record, without drift.
-
-    Mean and trend are taken off, and the record is carried on beyond both ends with its own slope
-    while it fades. Then all is done in one step on its spectrum: integration by ``1 / (i omega)``,
-    and the magnitude of a Butterworth high-pass of order 4, without its delay. Nothing is
-    integrated in time, so nothing drifts. The motion found is faded in and out within a second.
-
-    Parameters
-    ----------
-    record : Record
-        The record.
-    high_pass : float
-        Frequency below which motion is taken for drift [Hz].
-
-    Returns
-    -------
-    displacement, velocity, acceleration : ndarray of float, shape (n_channels, n_steps)
-        Motion in SI units; displacement is the part above the high-pass alone.
-    """
-    fs, n = record.sampling_frequency, record.samples.shape[1]
-    positive("high_pass", high_pass)
-    padding = round(_PERIODS / high_pass * fs)
-    reach = min(padding, n - 1)
-    extended = _carried_on(_level(record.samples), reach)
-    size = fft.next_fast_len(n + 2 * reach + padding, real=True)
-    spectrum = fft.rfft(extended, size, axis=-1)
-    f = fft.rfftfreq(size, 1.0 / fs)
-    omega = 2j * np.pi * f
-    passed = np.zeros_like(f)
-    passed[1:] = 1.0 / np.sqrt(1.0 + (high_pass / f[1:]) ** (2 * _ORDER))
-    inverse = np.zeros_like(omega)
-    inverse[1:] = 1.0 / omega[1:]
-    velocity = spectrum * passed * (inverse if record.quantity == "acceleration" else 1.0)
-    acceleration = spectrum * passed * (1.0 if record.quantity == "acceleration" else omega)
-    spectra = (velocity * inverse, velocity, acceleration)
-    fade = _fade(n, fs)
-    inside = slice(reach, reach + n)
-    displacement, v, a = (fft.irfft(s, size, axis=-1)[..., inside] * fade for s in spectra)
-    return displacement, v, a
-
-
-def _level(samples: Array) -> Array:
-    """Take mean and trend off."""
-    t = np.linspace(-1.0, 1.0, samples.shape[1])
-    slope = (samples @ t) / (t @ t)
-    return samples - samples.mean(axis=1, keepdims=True) - slope[:, None] * t
-
-
-def _carried_on(samples: Array, reach: int) -> Array:
-    """Turn the record about its first and its last sample, and fade what is added."""
-    fade = 0.5 * (1.0 + np.cos(np.pi * np.arange(1, reach + 1) / (reach + 1)))
-    before = (2.0 * samples[:, :1] - samples[:, 1 : reach + 1]) * fade
-    after = (2.0 * samples[:, -1:] - samples[:, -2 : -2 - reach : -1]) * fade
-    return np.concatenate([before[:, ::-1], samples, after], axis=1)
-
-
-def _fade(n: int, fs: float) -> Array:
-    """Return a second of fading in and out, at most a twentieth of the record each."""
-    width = max(2, min(round(_TAPER * fs), n // 20))
-    rise = 0.5 * (1.0 - np.cos(np.pi * (np.arange(width) + 0.5) / width))
-    return np.concatenate([rise, np.ones(n - 2 * width), rise[::-1]])

@@ -27,7 +27,9 @@ from trundle.simulate.prepared import PreparedFloor
 __all__ = ["PlaceResponses", "lay_out_places"]
 
 _NOUGHT = 1e-12  # of the largest weight: of a wheel on a mesh line, half the nodes are round-off
-_RINGING = 8.0  # s behind the record, for the floor and for low bands to come to rest
+_RINGING = 8.0  # s behind the record, for low bands to come to rest
+_AT_REST = 1e-3  # of its motion, that a mode is left with before the period begins again
+_LONGEST = 300.0  # s of ringing at most: of a floor with next to no damping more is left
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,7 +123,7 @@ def lay_out_places(
     return PlaceResponses(
         dt=dt,
         n_steps=n_steps,
-        n_padded=_padded(n_steps, dt),
+        n_padded=_padded(n_steps, dt, _ringing(floor.propagator)),
         places=places,
         loads=_loads(rows, kept, used, n_steps),
         route_shapes=np.ascontiguousarray(modes.shapes[used].T),
@@ -132,13 +134,19 @@ def lay_out_places(
     )
 
 
-def _padded(n_steps: int, dt: float) -> int:
+def _ringing(propagator: ModalRecursion) -> float:
+    """Return how long the slowest mode takes to come to rest [s]."""
+    slowest = 0.5 * float(propagator.double.min())  # zeta omega
+    return max(_RINGING, min(-np.log(_AT_REST) / max(slowest, 1e-9), _LONGEST))
+
+
+def _padded(n_steps: int, dt: float, ringing: float) -> int:
     """Return an even number of steps, quick to transform: whole seconds where steps divide them."""
     fs = 1.0 / dt
     if abs(fs - round(fs)) < 1e-9 * fs:
-        seconds = fft.next_fast_len(int(np.ceil(n_steps * dt + _RINGING)))
+        seconds = fft.next_fast_len(int(np.ceil(n_steps * dt + ringing)))
         return seconds * round(fs) * (2 if seconds * round(fs) % 2 else 1)
-    return 2 * fft.next_fast_len(int(np.ceil((n_steps + _RINGING * fs) / 2)), real=True)
+    return 2 * fft.next_fast_len(int(np.ceil((n_steps + ringing * fs) / 2)), real=True)
 
 
 def _loads(rows: ContactRows, kept: Array, used: Array, n_steps: int) -> sparse.csr_array:

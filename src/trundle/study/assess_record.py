@@ -21,6 +21,7 @@ from trundle.criteria import (
 from trundle.errors import FitnessWarning, InputError
 from trundle.response import (
     Reduced,
+    as_if_not_faded,
     level_warnings,
     reduce_runs,
     runs_of_record,
@@ -122,15 +123,16 @@ def assess_record(
     A clipped channel passes nothing, for its true levels are higher; nor does a record too short
     for the 1 Hz band pass a single number that weighs it.
     """
-    if high_pass > 0.5:
+    if not 0.05 <= high_pass <= 0.5:
         raise InputError(
-            f"the high-pass frequency must leave the 1 Hz band whole: 0.5 Hz at most; got "
-            f"{high_pass:g} Hz"
+            f"the high-pass frequency must take drift off and leave the 1 Hz band whole: 0.05 Hz "
+            f"to 0.5 Hz at most; got {high_pass:g} Hz"
         )
     many = tuple(criteria)
     runs = runs_of_record(record, high_pass=high_pass)
     reduced = reduce_runs(runs, averaging=averaging, quantities=spectra_asked_for(many))
     reduced = without_short_bands(reduced, record)
+    reduced = as_if_not_faded(reduced, record, averaging, high_pass=high_pass)
     top = record.sampling_frequency / 2.5
     found = assess_reduced(reduced, many, percentile=100.0, top=top, events=events)
     doubtful = clipped_channels(record)
@@ -154,7 +156,9 @@ def assess_record(
     )
 
 
-def read_simulated(folder: Path, *, point: str | None = None) -> tuple[Simulated, ...]:
+def read_simulated(
+    folder: Path, *, point: str | None = None, averaging: Averaging = "max_1s"
+) -> tuple[Simulated, ...]:
     """Read the band levels of a results folder, one for each case and road, by its last method.
 
     Parameters
@@ -163,11 +167,13 @@ def read_simulated(folder: Path, *, point: str | None = None) -> tuple[Simulated
         A results folder that trundle wrote.
     point : str, optional
         Name of the point; the first unless given.
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule that its levels must have.
 
     Raises
     ------
     InputError
-        No such folder, or no such point.
+        No such folder, no such point, or levels by another rule.
     """
     store = folder / "results.zarr"
     if not store.is_dir():
@@ -176,6 +182,12 @@ def read_simulated(folder: Path, *, point: str | None = None) -> tuple[Simulated
         points = [str(name) for name in data["point"].values]
         if point is not None and point not in points:
             raise InputError(f"{folder}: no point {point!r}; there are {', '.join(points)}")
+        rule = str(data["band_velocity"].attrs["long_name"]).rpartition(", ")[2]
+        if rule != averaging:
+            raise InputError(
+                f"{folder}: its levels are averaged by {rule}, and the record's by {averaging}, "
+                f"which may be several times apart; say --averaging {rule}"
+            )
         name = point or points[0]
         levels = data["band_velocity"].isel(method_name=-1).sel(point=name).load()
     found = []

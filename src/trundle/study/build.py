@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from trundle.criteria import Criterion, find_criterion
+from trundle.criteria import Criterion, find_criterion, shaped
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
 from trundle.errors import InputError, Problem, StudyError
 from trundle.road import RoughnessBand
@@ -328,7 +328,7 @@ class _Builder:
             )
             for i, name in enumerate(section.curves)
         ]
-        found: tuple[Criterion, ...] = tuple(c for c in curves if c is not None)
+        found = shaped((c for c in curves if c is not None), section.shape)
         return Assessment(
             criteria=found,
             method=section.method,

@@ -38,6 +38,7 @@ from trundle.vehicle import Vehicle
 
 __all__ = ["resonance_speeds", "try_changes"]
 
+_LEAST_STEPS, _MOST_STEPS = 20, 100_000  # of a crossing
 _ORDERS = (1, 2, 3)  # multiples of the axle passing frequency that are marked
 
 
@@ -73,6 +74,7 @@ def try_changes(
     for label, times in Counter(change.label for change in changes).items():
         if times > 1:
             raise InputError(f"{times} changes are called {label!r}; give each a name of its own")
+    _check_speeds(study, speeds)
     tell = report or (lambda _what, _share: None)
     alike = _sharing_runs(changes)
     total, done = len(alike) * len(speeds) * len(study.cases), 0
@@ -108,6 +110,18 @@ def try_changes(
         outcomes=tuple(itertools.chain.from_iterable(ordered)),
         resonances=resonances,
     )
+
+
+def _check_speeds(study: Study, speeds: Sequence[float]) -> None:
+    dt = min(method.interaction.integration.dt for method in study.methods)
+    longest = max(drive.route.length + drive.vehicle.length for drive in study.drives.values())
+    for speed in speeds:
+        steps = longest / speed / dt if speed > 0.0 else np.inf
+        if not _LEAST_STEPS < steps < _MOST_STEPS:
+            raise InputError(
+                f"a speed of {3.6 * speed:g} km/h crosses the longest route in {steps:.3g} steps "
+                f"of {1e3 * dt:g} ms; {_LEAST_STEPS} to {_MOST_STEPS} are computed"
+            )
 
 
 def _sharing_runs(changes: Sequence[Change]) -> list[list[Change]]:

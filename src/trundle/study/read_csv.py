@@ -19,7 +19,8 @@ __all__ = ["RawRecord", "even_rate", "read_csv"]
 
 _HEADING = re.compile(r"^\s*(?P<name>.*?)\s*(\[(?P<square>[^\[\]]+)\]|\((?P<round>[^()]+)\))\s*$")
 _WORDS = re.compile(r"[^\s\[\(]+\s*[\[\(][^\]\)]*[\]\)]|\S+")  # name [unit], or a word
-_TIME = re.compile(r"^\s*(t|time\w*|elapsed\w*|zeit|temps)\b", re.IGNORECASE)
+_TIME = re.compile(r"^\s*(t|t_\w+|time\w*|elapsed\w*|zeit|temps)\b", re.IGNORECASE)
+_TIME_UNIT = re.compile(r"[\s_](?P<unit>s|sec|ms|us|µs|min|h)$", re.IGNORECASE)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -104,7 +105,8 @@ def read_csv(path: Path) -> RawRecord:
     if len(table) < 2:
         raise InputError(f"{path}: holds one sample")
     if heading and _TIME.match(first[0]) and len(first) > 1:
-        scale = to_si(f"1 {units[0]}", "time") if units[0] else 1.0
+        unit = units[0] or _time_unit(names[0])
+        scale = to_si(f"1 {unit}", "time") if unit else 1.0
         rate = even_rate(scale * table[:, 0], path)
         return RawRecord(samples=table[:, 1:].T.copy(), rate=rate, names=names[1:], units=units[1:])
     rising = np.diff(table[:, 0])
@@ -134,7 +136,8 @@ def even_rate(time: Float[Array, " steps"], path: Path) -> float:
         raise InputError(f"{path}: time does not rise; sort the record")
     step = float((time[-1] - time[0]) / (len(time) - 1))
     # Stamps are written with so many decimals: they stray by half of the last, and no more.
-    decimals = next((k for k in range(10) if np.allclose(time, np.round(time, k), atol=1e-12)), 10)
+    exact = 4.0 * np.finfo(float).eps * max(1.0, float(np.abs(time).max()))
+    decimals = next((k for k in range(10) if np.abs(time - np.round(time, k)).max() <= exact), 10)
     if np.abs(time - (time[0] + step * np.arange(len(time)))).max() > 10.0**-decimals + 0.01 * step:
         usual = float(np.median(steps))
         at = int(np.argmax(steps))
@@ -221,6 +224,12 @@ def _is_number(text: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def _time_unit(name: str) -> str:
+    """Return the unit behind a heading such as ``time_ms`` or ``Time ms``, or nothing."""
+    match = _TIME_UNIT.search(name)
+    return match["unit"].replace("sec", "s") if match else ""
 
 
 def _heading(text: str, column: int, *, heading: bool) -> tuple[str, str]:

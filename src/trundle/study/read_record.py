@@ -60,6 +60,8 @@ def read_record(path: Path, options: RecordOptions) -> Record:
         A file that cannot be read, has gaps or uneven time stamps, or whose unit is not known.
     """
     try:
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; name the record in it")
         if not path.is_file():
             raise InputError(f"{path}: no such file")
         if path.stat().st_size > _LARGEST:
@@ -95,6 +97,8 @@ def _unit(own: str, options: RecordOptions, path: Path, name: str) -> str:
     wav = path.suffix.lower() == ".wav"
     if options.full_scale and not wav:
         raise InputError(f"{path}: --full-scale is for WAV files; say --unit")
+    if options.full_scale and options.unit:
+        raise InputError(f"{path}: --full-scale says the unit too; leave --unit out")
     if own and options.unit and own != options.unit:
         raise InputError(
             f"{path}: channel {name!r} is in {own!r} by its heading, and --unit says "
@@ -165,7 +169,13 @@ def _read_uff(path: Path) -> RawRecord:
     found = [one for one in found if one.get("func_type") == 1 and not np.iscomplexobj(one["data"])]
     if not found:
         raise InputError(f"{path}: holds no time record (dataset 58, function type 1)")
-    times, rates = [np.asarray(one["x"], float) for one in found], set[float]()
+    for one in found:
+        if int(one.get("num_pts") or 0) != len(one["data"]):
+            raise InputError(
+                f"{path}: {_uff_name(one, 0)!r} says {one.get('num_pts')} samples and holds "
+                f"{len(one['data'])}; export it again"
+            )
+    times = [_uff_time_scale(one, path) * np.asarray(one["x"], float) for one in found]
     rates = {round(even_rate(time, path), 6) for time in times}
     if len(rates) > 1 or len({len(time) for time in times}) > 1:
         raise InputError(f"{path}: its channels differ in rate or length; assess them apart")
@@ -175,6 +185,16 @@ def _read_uff(path: Path) -> RawRecord:
         names=tuple(_uff_name(one, i) for i, one in enumerate(found)),
         units=tuple(_uff_unit(one) for one in found),
     )
+
+
+def _uff_time_scale(one: dict[str, object], path: Path) -> float:
+    label = str(one.get("abscissa_axis_units_lab") or "").strip()
+    if not label or label.upper() == "NONE":
+        return 1.0
+    try:
+        return to_si(f"1 {label}", "time")
+    except InputError as error:
+        raise InputError(f"{path}: its abscissa is no time: {error}") from None
 
 
 def _uff_name(one: dict[str, object], number: int) -> str:
@@ -208,6 +228,9 @@ def _read_miniseed(path: Path) -> RawRecord:
         raise InputError(f"{path}: gaps in {', '.join(gaps)}; cut the record there")
     if len({(trace.stats.sampling_rate, len(trace.data)) for trace in stream}) > 1:
         raise InputError(f"{path}: its channels differ in rate or length; assess them apart")
+    starts = [float(trace.stats.starttime) for trace in stream]
+    if max(starts) - min(starts) > 0.5 / float(stream[0].stats.sampling_rate):
+        raise InputError(f"{path}: its channels do not start together; assess them apart")
     return RawRecord(
         samples=np.array([trace.data for trace in stream], dtype=float),
         rate=float(stream[0].stats.sampling_rate),

@@ -260,6 +260,7 @@ class CriteriaSection(Section):
     averaging: Literal["max_1s", "slow", "fast", "event"] = "max_1s"
     events: Annotated[Number, Field(ge=1.0, le=1e6)] = 1.0
     files: tuple[Line, ...] = ()
+    shape: Literal["rising", "flat"] = "rising"
 
 
 class MapSection(Section):

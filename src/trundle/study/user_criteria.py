@@ -94,7 +94,13 @@ def _from_csv(text: str, path: Path) -> Criterion:
             "'frequency [Hz], limit [um/s]' and '1, 50'"
         )
     units = [_unit(heading, path) for heading in rows[0]]
-    points = [[f"{v.strip()} {u}" for v, u in zip(row, units, strict=True)] for row in rows[1:]]
+    if entry.get("quantity") == "vdv" and units[1].replace("^", "").replace("**", "") == "m/s1.75":
+        units[1] = "1"  # a dose's unit is no power of whole numbers, and has one spelling
+    if units[1] == "1":
+        units[1] = ""
+    points = [
+        [f"{v.strip()} {u}".strip() for v, u in zip(row, units, strict=True)] for row in rows[1:]
+    ]
     return _criterion(entry, points, str(path))
 
 

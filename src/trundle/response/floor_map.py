@@ -110,10 +110,11 @@ def floor_map(
 
     Notes
     -----
-    Energies over the event are sums over spectral lines (Parseval); they and the peaks equal those
-    of histories. The largest 1 s average is taken of each band's signal at a lower rate, above 7 Hz
-    of its envelope, in steps of 1/20 s: within 1 % of that of histories in bands that matter, and
-    within 4 % where next to nothing but the skirts of louder bands is left.
+    RMS velocity and peaks equal those of histories, and so do levels over the event of a floor that
+    is at rest when the record ends: they are sums over spectral lines (Parseval), which count what
+    still rings behind it too. The largest 1 s average is taken of each band's signal at a lower
+    rate, above 7 Hz of its envelope, in steps of 1/20 s: within 1 % of that of histories in bands
+    that matter, and within 4 % where next to nothing but the skirts of louder bands is left.
     """
     fs, n_runs, n_places = 1.0 / responses.dt, forces.shape[2], len(responses.places)
     mid_band = mid_band_frequencies()
@@ -159,17 +160,14 @@ class _Lines:
         self._averaging = one_of("averaging", averaging, ("event", "max_1s"))
         kind = np.complex64 if responses.single else np.complex128
         lines, fs = responses.frequencies, 1.0 / responses.dt
+        filters = [signal.freqz_sos(band_filter(f, fs), worN=lines, fs=fs)[1] for f in mid_band]
         # of a real record: every line but the first and the last stands for two
         twice = np.full(len(lines), 2.0)
         twice[0] = 1.0
         if self._n % 2 == 0:
             twice[-1] = 1.0
-        filters = [signal.freqz_sos(band_filter(f, fs), worN=lines, fs=fs)[1] for f in mid_band]
-        weights = [twice, *(twice * np.abs(h) ** 2 for h in filters)]
-        self._weights = np.stack(weights, axis=1) / (self._n * self._n_steps)
-        if averaging == "max_1s":
-            self._weights = self._weights[:, :1]
-        self._weights = self._weights.astype(kind(0).real.dtype)
+        weights = np.stack([twice * np.abs(h) ** 2 for h in filters], axis=1)
+        self._weights = (weights / (self._n * self._n_steps)).astype(kind(0).real.dtype)
         period = self._n / fs
         self._bands = [
             _whole_band(response, round(fs), kind)
@@ -182,16 +180,20 @@ class _Lines:
         self, rows: Complex[Array, "places lines"], acceleration: Array | None
     ) -> tuple[Array, Array, Array]:
         """Return RMS velocity, peak acceleration and band levels of one run."""
-        energy = (np.real(rows) ** 2 + np.imag(rows) ** 2) @ self._weights
+        rms = np.sqrt(np.mean(self._record(rows) ** 2, axis=-1))
         peak = np.full(len(rows), np.nan)
         if acceleration is not None:
-            record = fft.irfft(acceleration, self._n, axis=-1)[:, : self._n_steps]
+            record = self._record(acceleration)
             peak = np.maximum(record.max(axis=-1), -record.min(axis=-1))
         if self._averaging == "event":
-            bands = np.sqrt(energy[:, 1:])
+            bands = np.sqrt((np.real(rows) ** 2 + np.imag(rows) ** 2) @ self._weights)
         else:
             bands = np.stack([band.largest(rows) for band in self._bands], axis=-1)
-        return np.sqrt(energy[:, 0]), peak, bands
+        return rms, peak, bands
+
+    def _record(self, rows: Complex[Array, "places lines"]) -> Float[Array, "places steps"]:
+        """Return the history over the record, without what rings behind it."""
+        return fft.irfft(rows, self._n, axis=-1)[:, : self._n_steps]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -439,6 +439,8 @@ def test_what_loggers_do_to_records_is_named():
         filled = noise.copy()
         filled[8000:8200] = fill
         assert "held, z" in subjects(filled)
+        (verdict,) = assess_record(made(1e-3 * filled), [find_criterion("VC-A")]).verdicts
+        assert (verdict.status, verdict.margin > 1.0) == ("not assessed", True)
     spiky = noise.copy()
     spiky[9000] = 0.1
     assert "spikes, z" in subjects(spiky)

@@ -274,8 +274,8 @@ def main() -> None:
 
 def _say_interrupted() -> None:
     print(
-        "interrupted: no results were written, and earlier ones still stand; the same command "
-        "goes on with what was finished",
+        "interrupted: no results were written, and earlier ones still stand; 'trundle run' goes on "
+        "with what was finished",
         file=sys.stderr,
     )
 

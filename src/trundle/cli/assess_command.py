@@ -93,7 +93,7 @@ def _print(result: RecordResult) -> None:
     )
     print_table(
         f"Verdict, averaging {result.averaging}; margin = limit / level",
-        ("channel", "criterion", "verdict", "margin", "band [Hz]", "at [s]"),
+        ("channel", "criterion", "verdict", "margin", "band [Hz]", "after [s]"),
         (
             (
                 v.point,

@@ -26,7 +26,7 @@ from trundle.signals.psd import amplitude_spectrum, welch_psd
 from trundle.signals.record import (
     Record,
     RecordQuantity,
-    clipped_channels,
+    doubtful_channels,
     is_steady,
     record_warnings,
 )
@@ -62,8 +62,8 @@ __all__ = [
     "band_maxima",
     "band_peaks",
     "behind",
-    "clipped_channels",
     "crest_factor",
+    "doubtful_channels",
     "filter_bands",
     "filter_zero_phase",
     "is_steady",

@@ -12,7 +12,7 @@ from trundle._checks import frozen_array, one_of, positive, set_frozen
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 
-__all__ = ["Record", "RecordQuantity", "clipped_channels", "is_steady", "record_warnings"]
+__all__ = ["Record", "RecordQuantity", "doubtful_channels", "is_steady", "record_warnings"]
 
 RecordQuantity: TypeAlias = Literal["acceleration", "velocity"]
 """What a sensor measured."""
@@ -110,9 +110,10 @@ def _rows(record: Record) -> zip[tuple[str, Array]]:
     return zip(record.channel_names, record.samples, strict=True)
 
 
-def clipped_channels(record: Record) -> tuple[str, ...]:
-    """Return the channels that were overloaded."""
-    return tuple(name for name, row in _rows(record) if _on_the_rails(row))
+def doubtful_channels(record: Record) -> tuple[str, ...]:
+    """Return the channels that were overloaded, or hide a gap: their true levels may be higher."""
+    fs = record.sampling_frequency
+    return tuple(name for name, row in _rows(record) if _on_the_rails(row) or _held(name, row, fs))
 
 
 def _on_the_rails(row: Array) -> int:

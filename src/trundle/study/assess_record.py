@@ -27,7 +27,7 @@ from trundle.response import (
     runs_of_record,
     without_short_bands,
 )
-from trundle.signals import Averaging, Record, clipped_channels
+from trundle.signals import Averaging, Record, doubtful_channels
 from trundle.simulate import Runs
 
 __all__ = ["RecordResult", "Simulated", "assess_record", "read_simulated"]
@@ -120,8 +120,8 @@ def assess_record(
 
     Notes
     -----
-    A clipped channel passes nothing, for its true levels are higher; nor does a record too short
-    for the 1 Hz band pass a single number that weighs it.
+    A channel that is clipped or hides a gap passes nothing, for its true levels may be higher; nor
+    does a record too short for the 1 Hz band pass a single number that weighs it.
     """
     if not 0.05 <= high_pass <= 0.5:
         raise InputError(
@@ -135,7 +135,7 @@ def assess_record(
     reduced = as_if_not_faded(reduced, record, averaging, high_pass=high_pass)
     top = record.sampling_frequency / 2.5
     found = assess_reduced(reduced, many, percentile=100.0, top=top, events=events)
-    doubtful = clipped_channels(record)
+    doubtful = doubtful_channels(record)
     short = record.channel_names if record.lowest_frequency > 1.0 else ()
     verdicts = tuple(
         replace(v, status="not assessed")

@@ -133,14 +133,14 @@ def _moved(isolator: Isolator, samples: Array, sampling_frequency: float) -> Arr
     # scipy's annotations know the state-space form alone
     b, a, _ = signal.cont2discrete(system, 1.0 / sampling_frequency, method="foh")  # pyright: ignore
     n = samples.shape[-1]
-    size = fft.next_fast_len(2 * n)
-    f = fft.fftfreq(size, 1.0 / sampling_frequency)
-    f[size // 2] = abs(f[size // 2])
+    size = fft.next_fast_len(2 * n, real=True)
+    turned = np.iscomplexobj(samples)  # an answer to waves: both halves of the spectrum
+    transform, back = (fft.fft, fft.ifft) if turned else (fft.rfft, fft.irfft)
+    f = np.asarray((fft.fftfreq if turned else fft.rfftfreq)(size, 1.0 / sampling_frequency))
     # off the pole of an undamped isolator
     f = np.where(np.isclose(np.abs(f), isolator.frequency, rtol=1e-9), f * (1 + 1e-6), f)
     _, stepped = signal.freqz(np.ravel(b), a, worN=f, fs=sampling_frequency)
-    lacking = fft.fft(samples, size, axis=-1) * (isolator.response(f) / stepped)
-    whole = fft.ifft(lacking, axis=-1)[..., :n]
+    spectrum = transform(samples, size, axis=-1) * (isolator.response(f) / stepped)
     return np.asarray(
-        signal.lfilter(np.ravel(b), a, whole if np.iscomplexobj(samples) else whole.real, axis=-1)
+        signal.lfilter(np.ravel(b), a, back(spectrum, size, axis=-1)[..., :n], axis=-1)
     )

@@ -56,6 +56,23 @@ def test_a_table_is_interpolated_and_held_at_its_ends():
     assert np.abs(steady).max() == pytest.approx(0.01, rel=0.05)
 
 
+def test_a_table_of_an_isolator_moves_as_the_isolator():
+    """A mass on spring and damper has the least phase: its sizes alone give its motion in time.
+
+    Sizes above half the sampling frequency are not known to a record: a fifth of a step is left,
+    0.04 rad at 6 Hz.
+    """
+    isolator = Isolator(frequency=4.0, damping_ratio=0.1)
+    f = np.geomspace(0.01, 1000.0, 20_000)
+    table = TransmissibilityTable(frequencies=f, ratios=np.abs(isolator.response(f)))
+    t = np.arange(0, 20, 0.005)
+    u = np.where(t > 5, np.exp(-t / 3) * np.sin(2 * np.pi * 6 * (t - 5)), 0.0)
+    own, found = behind(isolator, u, 200.0), behind(table, u, 200.0)
+    assert np.abs(found - own).max() < 0.08 * np.abs(own).max()
+    assert np.mean(found**2) == pytest.approx(np.mean(own**2), rel=1e-3)
+    assert np.abs(found[t < 4.9]).max() < 1e-4 * np.abs(own).max()  # nothing before its cause
+
+
 @pytest.mark.parametrize(
     "make",
     [

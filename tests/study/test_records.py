@@ -6,13 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.io import wavfile
+from test_bad_input import GOOD
 
 from trundle.criteria import VC, assess_reduced, find_criterion
 from trundle.errors import ComputationError, InputError
 from trundle.response import few_runs_warnings, level_warnings, percentile_interval
 from trundle.signals import Record, band_edges, mid_band_frequencies, motion_of
-from trundle.study.assess_record import assess_record
+from trundle.study import load_study
+from trundle.study.assess_record import assess_record, read_simulated
 from trundle.study.read_record import RecordOptions, read_record
+from trundle.study.run import run_study
 
 FS, T = 400.0, 60.0
 TONES = {4: 60e-6, 6: 100e-6, 10: 40e-6, 13: 12e-6}  # band number: RMS velocity [m/s]
@@ -524,3 +527,26 @@ def test_generic_curves_may_be_flat(tmp_path, monkeypatch, trundle):
         summary = json.loads((tmp_path / shape / "summary.json").read_text())
         found = {v["criterion"]: v["verdict"] for v in summary["verdicts"]}
         assert found == {"VC-A": verdict, "VC-C": "fail"}
+
+
+def test_a_simulation_is_laid_beside(tmp_path, monkeypatch, capsys, trundle):
+    """The curves are those of the study's runs; another averaging rule is refused."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(GOOD.replace('duration = "4 s"', 'duration = "14 s"'))
+    assert trundle("run", "study.toml", "--out", "simulated") == 0
+    (cell,) = run_study(load_study(tmp_path / "study.toml")).cells.values()
+    (curve,) = read_simulated(tmp_path / "simulated")
+    expected = np.percentile(cell.spectra.values[:, 0], [5, 50, 95], axis=0)
+    np.testing.assert_allclose(curve.levels, expected, rtol=1e-12)
+    write_csv(tmp_path / "r.csv", *tones())
+    options = ("--simulation", "simulated", "--point", "tool")
+    assert trundle("assess", "r.csv", *options) == 0
+    figure = (tmp_path / "r-results" / "figures" / "spectra.svg").read_text()
+    assert curve.title == "main, class B, tool"
+    assert curve.title in figure
+    assert trundle("assess", "r.csv", *options, "--averaging", "event", "--out", "other") == 2
+    assert "averaged by max_1s" in capsys.readouterr().err
+    assert (
+        trundle("assess", "r.csv", "--simulation", "simulated", "--point", "x", "--out", "y") == 2
+    )
+    assert "no point 'x'; there are tool" in capsys.readouterr().err

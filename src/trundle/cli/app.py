@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from trundle import __version__
+from trundle.cli import options
 from trundle.errors import ComputationError, InputError
 
 __all__ = ["app", "main"]
@@ -82,54 +83,20 @@ def run(
 
 @app.command()
 def assess(
-    files: Annotated[
-        list[Path],
-        typer.Argument(help="Records: CSV, WAV, UFF 58 or miniSEED.", metavar="RECORD..."),
-    ],
+    files: options.Records,
     *,
-    unit: Annotated[
-        str, typer.Option("--unit", help="Unit of the samples, if no heading says it: mm/s2, V.")
-    ] = "",
-    rate: Annotated[
-        str, typer.Option("--rate", help="Sampling rate, if there is no time column: '500 Hz'.")
-    ] = "",
-    sensitivity: Annotated[
-        str, typer.Option("--sensitivity", help="Of the sensor: '10 V/(m/s2)', '1000 mV/g'.")
-    ] = "",
-    full_scale: Annotated[
-        str, typer.Option("--full-scale", help="What a WAV file's largest number is: '20 m/s2'.")
-    ] = "",
-    criteria: Annotated[
-        str,
-        typer.Option(
-            "--criteria",
-            "-c",
-            help="Names and files (TOML, CSV) between commas. \\[default: workshop to VC-E]",
-        ),
-    ] = "",
-    shape: Annotated[
-        str, typer.Option("--shape", help="Generic curves below 8 Hz: rising, or flat to 1 Hz.")
-    ] = "rising",
-    averaging: Annotated[
-        str, typer.Option("--averaging", help="max_1s, slow, fast or event.")
-    ] = "max_1s",
-    high_pass: Annotated[
-        str, typer.Option("--high-pass", help="Motion below this frequency is drift.")
-    ] = "0.5 Hz",  # noqa: S107 - a filter, not a password
-    events: Annotated[
-        float, typer.Option("--events", min=1.0, help="Passages that a vibration dose is for.")
-    ] = 1.0,
-    simulation: Annotated[
-        Path | None,
-        typer.Option("--simulation", help="Results folder of a study, to lay the record over."),
-    ] = None,
-    point: Annotated[
-        str | None, typer.Option("--point", help="Point of that study. \\[default: its first]")
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", "-o", help="Results folder. \\[default: RECORD's name + '-results']"),
-    ] = None,
+    unit: options.Unit = "",
+    rate: options.Rate = "",
+    sensitivity: options.Sensitivity = "",
+    full_scale: options.FullScale = "",
+    criteria: options.Criteria = "",
+    shape: options.Shape = "rising",
+    averaging: options.Averaging = "max_1s",
+    high_pass: options.HighPass = "0.5 Hz",  # noqa: S107 - a filter, not a password
+    events: options.Events = 1.0,
+    simulation: options.Simulation = None,
+    point: options.Point = None,
+    out: options.RecordOut = None,
 ) -> None:
     r"""Assess measured records against the same criteria, with the same levels and figures.
 
@@ -140,10 +107,10 @@ def assess(
     from trundle.cli import assess_command
     from trundle.study.read_record import RecordOptions
 
-    options = RecordOptions(unit=unit, rate=rate, sensitivity=sensitivity, full_scale=full_scale)
+    said = RecordOptions(unit=unit, rate=rate, sensitivity=sensitivity, full_scale=full_scale)
     assess_command.assess(
         files,
-        options,
+        said,
         criteria=criteria,
         shape=shape,
         averaging=averaging,

@@ -1,0 +1,67 @@
+"""Describe the options that say how a measured record is read and held against criteria."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+__all__ = [
+    "Averaging",
+    "Criteria",
+    "Events",
+    "FullScale",
+    "HighPass",
+    "Point",
+    "Rate",
+    "RecordOut",
+    "Records",
+    "Sensitivity",
+    "Shape",
+    "Simulation",
+    "Unit",
+]
+
+Records = Annotated[
+    list[Path], typer.Argument(help="Records: CSV, WAV, UFF 58 or miniSEED.", metavar="RECORD...")
+]
+Unit = Annotated[
+    str, typer.Option("--unit", help="Unit of the samples, if no heading says it: mm/s2, V.")
+]
+Rate = Annotated[
+    str, typer.Option("--rate", help="Sampling rate, if there is no time column: '500 Hz'.")
+]
+Sensitivity = Annotated[
+    str, typer.Option("--sensitivity", help="Of the sensor: '10 V/(m/s2)', '1000 mV/g'.")
+]
+FullScale = Annotated[
+    str, typer.Option("--full-scale", help="What a WAV file's largest number is: '20 m/s2'.")
+]
+Criteria = Annotated[
+    str,
+    typer.Option(
+        "--criteria",
+        "-c",
+        help="Names and files (TOML, CSV) between commas. \\[default: workshop to VC-E]",
+    ),
+]
+Shape = Annotated[
+    str, typer.Option("--shape", help="Generic curves below 8 Hz: rising, or flat to 1 Hz.")
+]
+Averaging = Annotated[str, typer.Option("--averaging", help="max_1s, slow, fast or event.")]
+HighPass = Annotated[str, typer.Option("--high-pass", help="Motion below this frequency is drift.")]
+Events = Annotated[
+    float, typer.Option("--events", min=1.0, help="Passages that a vibration dose is for.")
+]
+Simulation = Annotated[
+    Path | None,
+    typer.Option("--simulation", help="Results folder of a study, to lay the record over."),
+]
+Point = Annotated[
+    str | None, typer.Option("--point", help="Point of that study. \\[default: its first]")
+]
+RecordOut = Annotated[
+    Path | None,
+    typer.Option("--out", "-o", help="Results folder. \\[default: RECORD's name + '-results']"),
+]

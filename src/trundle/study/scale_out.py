@@ -27,7 +27,8 @@ class Cluster:
 
     def __init__(self, client: Any) -> None:  # noqa: ANN401 - dask has no types
         self._client = client
-        self._sent: dict[int, Any] = {}  # by the identity of what was sent
+        # what was sent, by its identity; held, for another may take the place of one let go of
+        self._sent: dict[int, tuple[LaidOut | Floor, Any]] = {}
         self._pending: dict[Any, _Sent] = {}
 
     def submit(self, job: Job, parts: Iterable[int], carrier: LaidOut | Floor) -> None:
@@ -48,11 +49,11 @@ class Cluster:
     def _send(self, what: _Sent) -> None:
         place = id(what.carrier)
         if place not in self._sent:
-            self._sent[place] = self._client.scatter(what.carrier, hash=False)
+            self._sent[place] = (what.carrier, self._client.scatter(what.carrier, hash=False))
         future = self._client.submit(
             _compute,
             what.job,
-            self._sent[place],
+            self._sent[place][1],
             what.part,
             key=f"{what.name}-{what.tries}",
             retries=_RETRIES,
@@ -84,7 +85,7 @@ class Cluster:
                     f"the cluster was lost while it computed {what.name}"
                 ) from error
             lost = self._sent.pop(id(what.carrier), None)
-            if lost is not None and lost.status == "finished":
+            if lost is not None and lost[1].status == "finished":
                 self._sent[id(what.carrier)] = lost
             self._send(replace(what, tries=what.tries + 1))
         except distributed.KilledWorker as error:
@@ -93,6 +94,8 @@ class Cluster:
                 "want of memory; use fewer workers"
             ) from error
         future.release()
+        if not any(other.carrier is what.carrier for other in self._pending.values()):
+            self._sent.pop(id(what.carrier), None)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -432,6 +432,17 @@ def test_steady_tones_are_no_louder_for_their_beginning(averaging, k):
     assert result.reduced.rms_velocity[0, 0] == pytest.approx(1e-4, rel=2e-3)
 
 
+def test_a_drift_does_not_make_an_event_steady():
+    """A passage 4 s behind the start of a minute, on a drift far larger: as without the drift."""
+    t = np.arange(0, 60, 1 / FS)
+    event = 1e-3 * np.exp(-(((t - 4) / 1) ** 2)) * np.sin(2 * np.pi * 8 * t)
+    levels = [
+        assess_record(made(event + drift), VC).reduced.spectra.values[0, 0, 9]
+        for drift in (0.0, 0.01 * t)
+    ]
+    assert levels[1] == pytest.approx(levels[0], rel=0.01)
+
+
 def test_what_loggers_do_to_records_is_named():
     """A gap filled with zeros or one value, a single spike, rails hit seldom; none in sound records."""
     rng = np.random.default_rng(1)

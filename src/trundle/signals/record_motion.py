@@ -44,7 +44,7 @@ def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, 
     """
     fs, n = record.sampling_frequency, record.samples.shape[1]
     within("high_pass", high_pass, 0.05, fs)
-    faded = _without_line(record, high_pass) * _fades(record)
+    faded = _faded(record, high_pass)[1]
     size = fft.next_fast_len(n + round(_PERIODS / high_pass * fs), real=True)
     spectrum = fft.rfft(faded, size, axis=-1)
     f = fft.rfftfreq(size, 1.0 / fs)
@@ -72,28 +72,28 @@ def lost_by_fading(
     high_pass : float
         Frequency below which motion is taken for drift [Hz].
     """
-    whole = _without_line(record, high_pass)
-    faded = whole * _fades(record)
+    whole, faded = _faded(record, high_pass)
     factors = (np.mean(whole**k, axis=1) / np.mean(faded**k, axis=1) for k in (2, 4))
     square, fourth = factors
     return square**0.5, fourth**0.25
 
 
-def _fades(record: Record) -> Float[Array, "channels steps"]:
-    """Return the factors by which a record is faded in and out.
+def _faded(record: Record, high_pass: float) -> tuple[Array, Array]:
+    """Return a record without what is slow, as it is and faded in and out.
 
     An event loses a second at both ends, which are at rest, or warned of. Steady motion loses more,
     so that no filter takes its beginning for an event; but no end that is louder than the rest.
     """
     fs, n = record.sampling_frequency, record.samples.shape[1]
     few, many = (max(2, min(round(t * fs), int(n * share))) for t, share in (_EVENT, _STEADY))
-    out = np.ones_like(record.samples)
-    for row, fade in zip(record.samples, out, strict=True):
+    whole = _without_line(record, high_pass)
+    fades = np.ones_like(whole)
+    for row, fade in zip(whole, fades, strict=True):
         steady, loud = is_steady(row, fs), _LOUD * float(np.std(row))
         for part, way in ((row[:many], fade), (row[::-1][:many], fade[::-1])):
             width = many if steady and np.std(part) < loud else few
             way[:width] = 0.5 * (1.0 - np.cos(np.pi * (np.arange(width) + 0.5) / width))
-    return out
+    return whole, whole * fades
 
 
 def _without_line(record: Record, high_pass: float) -> Array:

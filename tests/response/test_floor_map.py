@@ -50,6 +50,15 @@ def random_nodes(floor, count):
     return nodes, {f"n{i}": tuple(node) for i, node in enumerate(nodes)}
 
 
+def assert_levels(found, expected):
+    """To 1e-6, and to 2e-5 of the loudest band: filters that complete a motion answer before it.
+
+    What they answer before the record counts in the map alone, whose period holds it.
+    """
+    loudest = expected.max(axis=-1, keepdims=True)
+    assert np.all(np.abs(found - expected) < 1e-6 * expected + 2e-5 * loudest)
+
+
 @pytest.mark.parametrize("kind", [Coupled, Decoupled])
 def test_a_map_is_what_histories_at_its_places_give(kind):
     """20 random nodes, run by run, to 1e-6; quicker, the largest second within 1.5 %."""
@@ -65,14 +74,12 @@ def test_a_map_is_what_histories_at_its_places_give(kind):
     histories = reduce_runs(runs, averaging="event")
     np.testing.assert_allclose(found.rms_velocity, runs.record_rms_velocity(), rtol=1e-6)
     known = found.resolved & (found.mid_band > 3.0)  # lower filters still ring at the record's end
-    np.testing.assert_allclose(
-        found.band_levels[..., known], histories.spectra.values[..., known], rtol=1e-6
-    )
+    assert_levels(found.band_levels[..., known], histories.spectra.values[..., known])
     np.testing.assert_allclose(found.peak_acceleration, runs.peak_acceleration(), rtol=1e-6)
 
     expected = reduce_runs(runs).spectra.values
     exact = floor_map(responses, forces, f_max=layout.f_max, every_step=True)
-    np.testing.assert_allclose(exact.band_levels[..., known], expected[..., known], rtol=1e-6)
+    assert_levels(exact.band_levels[..., known], expected[..., known])
     seconds = floor_map(responses, forces, f_max=layout.f_max)
     low = found.mid_band < 1.9
     np.testing.assert_allclose(

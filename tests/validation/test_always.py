@@ -9,6 +9,7 @@ import itertools
 import numpy as np
 import pytest
 from scipy import sparse
+from scipy.ndimage import convolve1d
 
 from models import small_floor
 from trundle.dynamics import (
@@ -18,6 +19,7 @@ from trundle.dynamics import (
     Newmark,
     NewmarkPropagator,
     Rayleigh,
+    restoring_filter,
 )
 from trundle.road import Profile
 from trundle.route import DriveIn, Hermite, Route
@@ -26,6 +28,7 @@ from trundle.simulate import _march as march
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor
 from trundle.simulate._modal_floor import ModalFloor
+from trundle.simulate._point_motion import complete, point_filters
 from trundle.simulate._roads import drawn_roads, roads_under_wheels
 from trundle.simulate._schedule import operator_rows, timeline_of
 from trundle.simulate.layout import _springs
@@ -97,14 +100,21 @@ def modal_states(floor, crossing, method, duration):
         modes, prepared.propagator, rows, timeline.speed[timeline.n_run_in :], reader,
         flexibility=None,
     )  # fmt: skip
-    vehicle = ExactRecursion(crossing.vehicle.free_system, method.integration.dt)
+    vehicle, standing = (
+        ExactRecursion(system, method.integration.dt)
+        for system in (crossing.vehicle.free_system, crossing.vehicle.system)
+    )
     springs = _springs((crossing,))
     record = drive_in_blocks(
-        Steps(springs=springs, vehicle=vehicle, timeline=timeline), carrier, road,
-        weight=np.ones(1), coupled=True, static=False,
+        Steps(
+            vehicles=((springs, standing),), springs=springs, together=standing, timeline=timeline
+        ),
+        carrier, road, weight=np.ones(1), coupled=True, static=False,
     )  # fmt: skip
+    record = complete(record, point_filters(carrier, None))
     forces = record.forces[:, :, 0]
     push = (forces - crossing.vehicle.static_forces) @ crossing.vehicle.contact_map
+    push = convolve1d(push, restoring_filter(), axis=0, mode="nearest")
     e, k = springs.contact_map, springs.stiffness
     still = np.linalg.solve(springs.standing_stiffness, e.T @ (k * road.start))[:, 0]
     states = [np.concatenate([still, 0 * still])]

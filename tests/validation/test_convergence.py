@@ -155,13 +155,14 @@ def test_modal_tends_to_direct(record):
     settings = {"points": {"p": (7.0, 4.0)}, "n_runs": 1, "seed": 2, "duration": 3.0}
     for kind in (Decoupled, Coupled):
         fine = ensemble(
-            floor, way, method=kind(integration=Newmark(dt=5e-4), damping=damping), **settings
+            floor, way, method=kind(integration=Newmark(dt=1.25e-4), damping=damping), **settings
         )
         integration = Modal(f_max=800.0, dt=5e-4)
         prepared = prepare(floor, integration, damping)
         modal = ensemble(
             prepared, way, method=kind(integration=integration, damping=damping), **settings
         )
-        error = np.abs(modal.velocity - fine.velocity).max() / np.abs(fine.velocity).max()
+        every = fine.velocity[:, ::4]
+        error = np.abs(modal.velocity - every).max() / np.abs(every).max()
         name = f"modal below 800 Hz against direct, {kind.__name__.lower()}, peak difference"
         record.row(name, 0.0, error, atol=1e-3, source="two methods, one answer")

@@ -4,11 +4,21 @@ from trundle.dynamics.damping import Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
 from trundle.dynamics.exact import ExactRecursion, Modal, ModalRecursion
 from trundle.dynamics.newmark import HalfStep, Newmark, NewmarkPropagator
+from trundle.dynamics.sampling import (
+    REACH,
+    TOP,
+    differentiator,
+    image_filters,
+    responses_of,
+    restoring_filter,
+)
 from trundle.dynamics.sparse_solver import Factor, HalfSolve, available_backends, factorise
 from trundle.dynamics.stepping import Motion, Propagator, State
 from trundle.dynamics.system import LinearSystem, block_diagonal
 
 __all__ = [
+    "REACH",
+    "TOP",
     "Damping",
     "ExactRecursion",
     "Factor",
@@ -28,6 +38,10 @@ __all__ = [
     "available_backends",
     "block_diagonal",
     "count_modes_below",
+    "differentiator",
     "factorise",
+    "image_filters",
     "natural_modes",
+    "responses_of",
+    "restoring_filter",
 ]

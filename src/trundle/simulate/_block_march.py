@@ -6,7 +6,6 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from jaxtyping import Float
@@ -14,12 +13,13 @@ from scipy import linalg
 
 from trundle._threads import n_threads
 from trundle._typing import Array
-from trundle.dynamics import ExactRecursion
+from trundle.dynamics import REACH, ExactRecursion
 from trundle.errors import UnstableStepError
 from trundle.simulate._blocks import Block, contact_block, load_block
 from trundle.simulate._march import Progress, Record, Springs
 from trundle.simulate._modal_floor import ModalFloor
 from trundle.simulate._powers import FloorPowers, VehiclePowers
+from trundle.simulate._rigid_march import forces_on_rigid_ground
 from trundle.simulate._roads import RoadUnderWheels
 from trundle.simulate._schedule import Timeline
 
@@ -38,16 +38,19 @@ class Steps:
 
     Attributes
     ----------
+    vehicles : tuple of Springs and ExactRecursion
+        Contacts of each vehicle, and the vehicle on its contact springs.
     springs : Springs
-        Contacts of the vehicle.
-    vehicle : ExactRecursion
-        The vehicle without its contact springs.
+        All contacts.
+    together : ExactRecursion
+        All vehicles as one system.
     timeline : Timeline
         Where the wheels are.
     """
 
+    vehicles: tuple[tuple[Springs, ExactRecursion], ...]
     springs: Springs
-    vehicle: ExactRecursion
+    together: ExactRecursion
     timeline: Timeline
 
 
@@ -79,92 +82,106 @@ def drive_in_blocks(
         Whether the record starts in static equilibrium, or after a run-in.
     progress : callable, optional
         Told the share of steps done.
+
+    Returns
+    -------
+    Record
+        Motion goes on for REACH steps behind the contact forces, under the last of them.
     """
     floor = None if floor is None else floor.for_one_drive()
     with ThreadPoolExecutor(n_threads()) as pool:
         march = _March(steps, road, weight, pool)
-        if static:
-            march.stand(floor if coupled else None)
-        else:
-            march.run_in()
-        if coupled and floor is not None:
-            return march.record(floor, None, progress)
-        forces = march.record(None, None, None if floor else progress)
         if floor is None:
-            return forces
-        march.rest(floor, forces.forces[0] if static else None)
-        return march.record(floor, forces.forces, progress)
+            return march.on_rigid_ground()
+        if coupled:
+            march.settle(floor, loaded=static)
+        else:
+            march.rest(floor, march.forces[0] if static else None)
+        return march.record(floor, progress, coupled=coupled)
 
 
 class _March:
-    """The state of every run, in slices of columns, and the way it is carried on."""
+    """The state of every run, in slices of columns, and the way it is carried on.
+
+    `forces` are those on rigid ground; a coupled drive puts its own in their place.
+    """
 
     def __init__(self, steps: Steps, road: RoadUnderWheels, weight: Array, pool: Executor) -> None:
-        self._steps, self._road, self._pool = steps, road, pool
+        self._steps, self._road, self._pool, self._weight = steps, road, pool, weight
         springs = steps.springs
         self._n, n_runs = len(springs.static), len(weight)
         self._slices = [slice(i, i + _COLUMNS) for i in range(0, n_runs, _COLUMNS)]
-        self._weight = weight
-        push = np.hstack(
-            [springs.stiffness * springs.contact_map, springs.damping * springs.contact_map]
-        )
         self._length = block_length(self._n)
-        self._vehicle = VehiclePowers(steps.vehicle, springs.contact_map, push, self._length)
-        still = linalg.solve(
-            springs.standing_stiffness,
-            springs.contact_map.T @ (springs.stiffness * road.start),
-        )
-        self._z = np.vstack([still, np.zeros_like(still)])
-        self._dynamic = -springs.stiffness * (springs.contact_map @ still - road.start)
+        self._vehicle = _powers(springs, steps.together, self._length)
+        self.forces = self._on_rigid_ground() + springs.static * weight
+        self._powers: FloorPowers
+        self._zeta = np.zeros((2 * springs.contact_map.shape[1], n_runs))
+        self._push = np.zeros((self._n, n_runs))
         self._x: list[Array] = []
         self._work = _Work()
 
-    def stand(self, floor: ModalFloor | None) -> None:
-        """Put vehicle and floor in static equilibrium at time 0.
+    def _on_rigid_ground(self) -> Array:
+        """Return every vehicle's dynamic forces; none knows of the others."""
+        timeline, at = self._steps.timeline, 0
+        kept = len(self._road.push) - timeline.n_run_in
+        forces = np.empty((kept, self._n, len(self._weight)))
+        for (springs, recursion), begin in zip(self._steps.vehicles, timeline.begin, strict=True):
+            mine = slice(at, at + len(springs.static))
+            at = mine.stop
+            forces[:, mine] = forces_on_rigid_ground(
+                _powers(springs, recursion, self._length),
+                self._road.push[begin:, mine],
+                linalg.solve(
+                    springs.standing_stiffness,
+                    springs.contact_map.T @ (springs.stiffness * self._road.start[mine]),
+                ),
+                kept=kept,
+                columns=self._slices,
+                pool=self._pool,
+            )
+        return forces
 
-        With S the floor's static sinking under unit forces, ``K_v z = E^T k (r - S f)`` and
-        ``f = static - k (E z - r + S f)`` are solved together.
+    def on_rigid_ground(self) -> Record:
+        """Return the forces on rigid ground, and no motion."""
+        out = _Histories(None, self._steps.timeline, self.forces)
+        out.check()
+        return out.done()
+
+    def settle(self, floor: ModalFloor, *, loaded: bool) -> None:
+        """Put the floor at rest at time 0, under the vehicle's load in static equilibrium or not.
+
+        With S the floor's static sinking under unit forces and ``R = 1 - kE K_v^-1 E^T`` what a
+        push at the held vehicle leaves of itself, ``f = f_rigid - R k S f``.
         """
-        springs, height = self._steps.springs, self._road.start
-        e, k, static = springs.contact_map, springs.stiffness, springs.static * self._weight
-        sink = np.zeros((self._n, self._n)) if floor is None else floor.static_sinking()
-        matrix = np.block(
-            [[springs.standing_stiffness, e.T @ (k * sink)], [k * e, np.eye(self._n) + k * sink]]
-        )
-        solution = linalg.solve(matrix, np.vstack([e.T @ (k * height), static + k * height]))
-        still, forces = np.split(solution, [e.shape[1]])
-        self._z = np.vstack([still, np.zeros_like(still)])
-        self._dynamic = forces - static
+        if not loaded:
+            self.rest(floor, None)
+            return
+        springs = self._steps.springs
+        e, k = springs.contact_map, springs.stiffness
+        sink = k * floor.static_sinking()
+        lift = linalg.solve(springs.standing_stiffness, e.T)
+        left = np.eye(self._n) - k * (e @ lift)
+        forces = linalg.solve(np.eye(self._n) + left @ sink, self.forces[0])
+        self._push = -sink @ forces
+        self._zeta[: len(lift)] = lift @ self._push
+        self.forces[0] = forces
         self.rest(floor, forces)
 
-    def rest(self, floor: ModalFloor | None, forces: Array | None) -> None:
+    def rest(self, floor: ModalFloor, forces: Array | None) -> None:
         """Put the floor at rest, deflected by static forces if given."""
-        if floor is None:
-            return
         # Each slice has an array of its own, so that it lies together in cache.
         for part in self._slices:
-            n_runs = len(self._weight[part])
+            n_runs = self.forces[0, 0, part].size
             still = np.zeros((2 * floor.n_modes, n_runs))
             state = still if forces is None else floor.static_state(forces[:, part])
             self._x.append(state.astype(floor.dtype, copy=False))
 
-    def run_in(self) -> None:
-        """Drive on rigid ground up to time 0."""
-        forming = self._form(None, solve=True)
-        parts = _parts(self._steps.timeline.n_run_in, self._length)
-        self._carry([(first, forming(first, count)) for first, count in parts], 0, None, None)
-
-    def record(
-        self, floor: ModalFloor | None, forces: Array | None, progress: Progress | None
-    ) -> Record:
-        """Carry on over the record; with `forces` given they load the floor as they are."""
-        timeline = self._steps.timeline
-        n_steps = len(timeline.time) - timeline.n_run_in
-        if floor is not None and not self._x:
-            self.rest(floor, None)
-        out = _Histories(floor, timeline, self._n, len(self._weight))
-        out.begin(self._x, self._total(self._dynamic) if forces is None else forces[0])
-        forming = self._form(floor, solve=forces is None)
+    def record(self, floor: ModalFloor, progress: Progress | None, *, coupled: bool) -> Record:
+        """Carry on over the record; uncoupled forces load the floor as they are."""
+        n_steps = len(self.forces)
+        out = _Histories(floor, self._steps.timeline, self.forces)
+        out.begin(self._x)
+        forming = self._form(floor, solve=coupled)
 
         def stretch(parts: list[tuple[int, int]]) -> list[tuple[int, Block]]:
             return [(first, forming(first, count)) for first, count in parts]
@@ -175,21 +192,43 @@ class _March:
         for following in [*stretches[1:], []]:
             blocks = later.result()
             later = self._pool.submit(stretch, following)
-            self._carry(blocks, timeline.n_run_in, forces, out)
+            self._carry(blocks, out)
             if progress is not None:
                 progress((blocks[-1][0] + blocks[-1][1].n_steps) / n_steps)
+        self._go_on(floor, out)
         return out.done()
 
-    def _form(self, floor: ModalFloor | None, *, solve: bool) -> Callable[[int, int], Block]:
+    def _go_on(self, floor: ModalFloor, out: _Histories) -> None:
+        """Carry the floor on behind the record under the last forces, where wheels stand still."""
+        powers, last = self._powers, len(self.forces) - 1
+        load = floor.loads(last, last + 1)[0].T
+        caught_up = powers.up_to(last)
+        step = floor.propagator.from_start + floor.propagator.from_end
+        rows = np.concatenate(list(powers.point_rows), axis=1)  # (outputs, 2 modes)
+
+        def go_on(number: int) -> None:
+            """Carry some runs on."""
+            part, x = self._slices[number], self._x[number].astype(float)
+            if caught_up is not None:
+                _advance(caught_up, x, np.empty_like(x))
+            held = load @ self.forces[last, :, part]
+            push = np.concatenate([step[:, :1] * held, step[:, 1:] * held])
+            own = floor.points @ held
+            for late in range(REACH):
+                _advance(powers.phi[0], x, np.empty_like(x))
+                x -= push
+                seen = rows @ x
+                seen[-len(own) :] -= own  # the acceleration feels the force at once
+                out.behind(late, part, seen)
+
+        for _ in self._pool.map(go_on, range(len(self._slices))):
+            pass
+
+    def _form(self, floor: ModalFloor, *, solve: bool) -> Callable[[int, int], Block]:
         """Return the function that forms the block after a step."""
         springs = self._steps.springs
-        columns = (springs.stiffness[:, 0], springs.damping[:, 0], springs.static[:, 0])
-        if floor is None:
-            rigid = cache(
-                lambda count: contact_block(None, None, self._vehicle, 0, count, springs=columns)
-            )
-            return lambda _, count: rigid(count)
-        powers = FloorPowers(
+        columns = (springs.stiffness[:, 0], springs.damping[:, 0])
+        self._powers = powers = FloorPowers(
             floor.propagator, floor.points, self._length, single=floor.dtype == np.float32
         )
         if solve:
@@ -198,49 +237,25 @@ class _March:
             )
         return lambda first, count: load_block(floor, powers, first, count)
 
-    def _total(self, dynamic: Array) -> Array:
-        return dynamic + self._steps.springs.static * self._weight
-
-    def _carry(
-        self,
-        blocks: list[tuple[int, Block]],
-        offset: int,
-        forces: Array | None,
-        out: _Histories | None,
-    ) -> None:
-        """Carry every run over blocks, each given with the step before it.
-
-        `offset` is where those steps start on the whole timeline; `forces` load the floor where
-        contacts are not solved.
-        """
+    def _carry(self, blocks: list[tuple[int, Block]], out: _Histories) -> None:
+        """Carry every run over blocks, each given with the step before it."""
 
         def carry(number: int) -> None:
-            part = self._slices[number]
+            part, x = self._slices[number], self._x[number]
             for first, block in blocks:
-                if block.floor is None:
-                    every, seen = self._solve(block, offset + first, number, None), None
-                else:
-                    every, seen = self._over_floor(block, offset + first, number, forces)
-                if out is not None:
-                    out.put(first + 1, part, every[self._n :], seen)
+                steps = slice(first, first + block.n_steps + 1)
+                if block.contact is not None:
+                    felt = self._work.product("felt", block.floor.contact_rows, x)
+                    self._solve(block, steps, part, felt)
+                every = self.forces[steps, :, part].reshape(-1, x.shape[1])
+                out.put(first + 1, part, self._over_floor(block, x, every))
 
         for _ in self._pool.map(carry, range(len(self._slices))):
             pass
 
-    def _over_floor(
-        self, block: Block, at: int, number: int, forces: Array | None
-    ) -> tuple[Array, Array]:
-        """Return all forces of a block on some runs, and what the points do; carry their floor."""
+    def _over_floor(self, block: Block, x: Array, every: Array) -> Array:
+        """Return what the points do in a block under all its forces; carry the floor."""
         maps = block.floor
-        assert maps is not None  # the caller has looked
-        x = self._x[number]
-        if forces is None:
-            felt = self._work.product("felt", maps.contact_rows, x)
-            every = self._solve(block, at, number, felt)
-        else:
-            first = at - self._steps.timeline.n_run_in
-            given = forces[first : first + block.n_steps + 1, :, self._slices[number]]
-            every = given.reshape(-1, given.shape[2])
         seen = self._work.product("seen", maps.point_rows, x)
         seen = np.add(
             seen, maps.points_by_forces @ every, out=seen if seen.dtype == every.dtype else None
@@ -251,26 +266,23 @@ class _March:
         for top in range(0, len(x), _ROWS):  # what is added is still in cache
             part = slice(top, top + _ROWS)
             x[part] += self._work.product("state", maps.state_by_forces[part], pressing)
-        return every, seen
+        return seen
 
-    def _solve(self, block: Block, at: int, number: int, felt: Array | None) -> Array:
-        """Solve the contact forces of a block; return those before it and in it.
+    def _solve(self, block: Block, steps: slice, part: slice, felt: Array) -> None:
+        """Put a block's contact forces in the place of those on rigid ground.
 
-        `felt` is what the floor's state alone gives contacts that stand on it.
+        `felt` is what the floor's state alone pushes at contacts that stand on it.
         """
         maps = block.contact
         assert maps is not None  # the caller has looked
-        part = self._slices[number]
-        static, weight = self._steps.springs.static[:, 0], self._weight[part]
-        push = self._road.push[at + 1 : at + 1 + block.n_steps, :, part]
-        before, z = self._dynamic[:, part], self._z[:, part]
-        known = [push.reshape(-1, len(weight)), z, before, weight[None]]
-        dynamic = maps.by_known @ np.vstack(known if felt is None else [*known, felt])
-        every = np.vstack([before, dynamic])
-        self._z[:, part] = maps.vehicle @ np.vstack([z, every])
-        self._dynamic[:, part] = dynamic[-self._n :]
-        every += np.outer(np.tile(static, block.n_steps + 1), weight)
-        return every
+        forces = self.forces[steps, :, part]
+        zeta, before = self._zeta[:, part], self._push[:, part]
+        rigid = forces[1:].reshape(-1, forces.shape[2])
+        solved = maps.by_known @ np.vstack([rigid, zeta, before, forces[0], felt])
+        found, pushes = np.split(solved, 2)
+        forces[1:] = found.reshape(block.n_steps, self._n, -1)
+        self._zeta[:, part] = maps.vehicle @ np.vstack([zeta, before, pushes])
+        self._push[:, part] = pushes[-self._n :]
 
 
 def _advance(power: Array, x: Array, work: Array) -> None:
@@ -303,6 +315,12 @@ class _Work(threading.local):
         return np.matmul(a, b, out=self.array(name, (a.shape[0], b.shape[1]), a.dtype))
 
 
+def _powers(springs: Springs, vehicle: ExactRecursion, length: int) -> VehiclePowers:
+    e = springs.contact_map
+    push = np.hstack([springs.stiffness * e, springs.damping * e])
+    return VehiclePowers(vehicle, e, push, length)
+
+
 def block_length(n_contacts: int) -> int:
     """Return how many steps a block has: fewer for many wheels, whose system is dense."""
     return int(np.clip(_FORCES // n_contacts, 8, _LONGEST))
@@ -317,37 +335,41 @@ def _parts(n_steps: int, length: int) -> Iterator[tuple[int, int]]:
 class _Histories:
     """Collect forces and outputs block by block, and stop at the first that is not finite."""
 
-    def __init__(
-        self, floor: ModalFloor | None, timeline: Timeline, n_contacts: int, n_runs: int
-    ) -> None:
+    def __init__(self, floor: ModalFloor | None, timeline: Timeline, forces: Array) -> None:
         self._floor, self._time = floor, timeline.time[timeline.n_run_in :]
         n_points = 0 if floor is None else len(floor.points)
-        self._motion = np.zeros((3, len(self._time), n_points, n_runs))
-        self._forces = np.zeros((len(self._time), n_contacts, n_runs))
+        self._motion = np.zeros((3, len(self._time) + REACH, n_points, forces.shape[2]))
+        self._forces = forces
 
-    def begin(self, states: list[Array], forces: Array) -> None:
-        self._forces[0] = forces
+    def begin(self, states: list[Array]) -> None:
+        """Read the points before the first step."""
         if self._floor is not None:
             x = np.hstack(states)
             half, points = len(x) // 2, self._floor.points
             self._motion[0, 0] = points @ x[:half]
-            load = self._floor.loads(0, 1)[0].T @ forces
+            load = self._floor.loads(0, 1)[0].T @ self._forces[0]
             held = (points * self._floor.propagator.square) @ x[:half]
             self._motion[2, 0] = -points @ load - held
 
-    def put(self, step: int, runs: slice, forces: Array, seen: Array | None) -> None:
-        """Keep what some runs do from a step on."""
-        n_runs = forces.shape[1]
-        forces = forces.reshape(-1, self._forces.shape[1], n_runs)
-        rows = slice(step, step + len(forces))
-        self._forces[rows, :, runs] = forces
-        whole = bool(np.isfinite(forces).all())
-        if seen is not None:
-            motion = seen.reshape(len(forces), 3, -1, n_runs)
-            self._motion[:, rows, :, runs] = motion.swapaxes(0, 1)
-            whole = whole and bool(np.isfinite(seen).all())
-        if not whole:
-            self._stop(step, forces)
+    def put(self, step: int, runs: slice, seen: Array) -> None:
+        """Keep what the points do in some runs from a step on."""
+        n_points, n_runs = self._motion.shape[2], seen.shape[1]
+        motion = seen.reshape(-1, 3, n_points, n_runs)
+        rows = slice(step, step + len(motion))
+        self._motion[:, rows, :, runs] = motion.swapaxes(0, 1)
+        if not np.isfinite(seen).all():
+            self._stop(step, self._forces[rows, :, runs])
+        self.check(step, step + len(motion), runs)
+
+    def behind(self, late: int, runs: slice, seen: Array) -> None:
+        """Keep what the points do so many steps behind the record."""
+        self._motion[:, len(self._time) + late, :, runs] = seen.reshape(3, -1, seen.shape[1])
+
+    def check(self, start: int = 0, stop: int | None = None, runs: slice = slice(None)) -> None:
+        """Stop at the first contact force that is not finite."""
+        forces = self._forces[start:stop, :, runs]
+        if not np.isfinite(forces).all():
+            self._stop(start, forces)
 
     def _stop(self, step: int, forces: Array) -> None:
         bad = ~np.isfinite(forces).all(axis=(1, 2))

@@ -7,9 +7,14 @@ and applied to every run by products of large matrices, which is as fast as a ma
 
 With X the modal displacements over velocities, exact steps for forces that are linear in between
 (`dynamics.exact`) give ``X_k = Phi^k X_0 - sum_j G_kj V_j f_j``, V_j the mode shapes under the
-wheels at step j. The same holds for the vehicle. The contact law at every step of the block,
-``f_k = static + k (y_k + r_k - E z_k) + c (its rate)``, is then one system in the block's forces,
-lower triangular in time.
+wheels at step j.
+
+What the vehicle does on rigid ground is known beforehand (`_rigid_march`). What is left is its
+answer to the floor's motion y alone: on its contact springs, which its matrices hold, it is driven
+by ``g = k y + c y'`` and moves by zeta, so that ``f = f_rigid + g - [k E, c E] zeta``. Its own
+poles are stepped exactly, however stiff its springs; only the floor follows the forces step by
+step. With g linear in the block's forces and f in the block's g, both lower triangular in time,
+one system in the block's forces is left.
 """
 
 from __future__ import annotations
@@ -34,13 +39,14 @@ class ContactMaps:
 
     Attributes
     ----------
-    by_known : ndarray of float, shape (n_forces, n_known)
-        Dynamic forces by, in this order: the push of the road at every step of the block; the
-        vehicle's state before it; the dynamic forces before it; the share of its static forces
-        that a run feels; what the floor's state alone would give contacts that stand on it.
+    by_known : ndarray of float, shape (2 n_forces, n_known)
+        Contact forces, then what the floor's motion pushes at the vehicle, by, in this order: the
+        contact forces on rigid ground at every step of the block; the vehicle's state before it;
+        that push and the contact forces before it; what the floor's state alone would push at
+        contacts that stand on it.
     vehicle : ndarray of float, shape (n_vehicle, n_vehicle + n_contacts + n_forces)
-        The vehicle's last state by its state before, and by all dynamic forces from the step
-        before the block on.
+        The vehicle's last state by its state before, and by all pushes from the step before the
+        block on.
     """
 
     by_known: Float[Array, "forces known"]
@@ -77,72 +83,85 @@ class FloorMaps:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Block:
-    """Hold the maps of one block: of its contacts where they are solved, of the floor if any."""
+    """Hold the maps of one block: of its contacts where they are solved, and of the floor."""
 
     n_steps: int
     contact: ContactMaps | None
-    floor: FloorMaps | None
+    floor: FloorMaps
 
 
 def contact_block(
-    floor: ModalFloor | None,
-    powers: FloorPowers | None,
+    floor: ModalFloor,
+    powers: FloorPowers,
     vehicle: VehiclePowers,
     first: int,
     n_steps: int,
     *,
-    springs: tuple[Array, Array, Array],
+    springs: tuple[Array, Array],
 ) -> Block:
-    """Form the maps of a coupled block, or of a vehicle on rigid ground.
+    """Form the maps of a coupled block.
 
     Parameters
     ----------
-    floor : ModalFloor or None
-        The floor under the wheels; None is rigid ground.
-    powers : FloorPowers or None
+    floor : ModalFloor
+        The floor under the wheels.
+    powers : FloorPowers
         Its powers.
     vehicle : VehiclePowers
-        Powers of the vehicle.
+        Powers of the vehicle on its contact springs.
     first : int
         Step before the block.
     n_steps : int
         Steps in the block.
     springs : tuple of ndarray
-        Contact stiffness [N/m], damping [N s/m] and static forces [N], shape (n_contacts,).
+        Contact stiffness [N/m] and damping [N s/m], shape (n_contacts,).
     """
-    stiffness, damping, static = springs
-    n = len(static)
-    on_total = np.zeros((n_steps, n, n_steps + 1, n))
-    standing, maps = np.zeros(0, dtype=np.intp), None
-    if floor is not None and powers is not None:
-        on_floor = floor.on_floor(first, first + n_steps + 1)
-        load = floor.loads(first, first + n_steps + 1, on_floor)
-        rows = _contact_rows(floor, first, n_steps, springs, on_floor)
-        at = powers.place(first)
-        late = rows_on_state(rows, powers.phi[at : at + n_steps])
-        influence = _floor_influence(load, powers, (rows, late), first)
-        on_total[:, on_floor[:, None], :, on_floor] = influence
-        _add_residual(on_total, floor, first, stiffness, damping)
-        standing = (np.arange(n_steps)[:, None] * n + on_floor).ravel()
-        late = late.reshape(len(standing), 2 * floor.n_modes)
-        maps = _floor_maps(floor, load, powers, first, late, on_floor=on_floor)
-    both = (on_total - vehicle.push_by_forces(n_steps)).reshape(n_steps * n, (n_steps + 1) * n)
-    solve = np.linalg.inv(np.eye(n_steps * n) - both[:, n:])
-    weight = on_total.reshape(n_steps * n, -1) @ np.tile(static, n_steps + 1)
-    by_known = [
-        solve,
-        -solve @ vehicle.push_by_state[: n_steps * n],
-        solve @ both[:, :n],
-        (solve @ weight)[:, None],
-        solve[:, standing],
-    ]
-    last = [
-        vehicle.phi[n_steps - 1],
-        vehicle.start[n_steps - 1],
-        *vehicle.lag[:n_steps][::-1],
-    ]
-    contact = ContactMaps(by_known=np.hstack(by_known), vehicle=np.hstack(last))
-    return Block(n_steps=n_steps, contact=contact, floor=maps)
+    n = len(springs[0])
+    on_floor = floor.on_floor(first, first + n_steps + 1)
+    load = floor.loads(first, first + n_steps + 1, on_floor)
+    rows = _contact_rows(floor, first, n_steps, springs, on_floor)
+    at = powers.place(first)
+    late = rows_on_state(rows, powers.phi[at : at + n_steps])
+    pushed = np.zeros((n_steps, n, n_steps + 1, n))
+    pushed[:, on_floor[:, None], :, on_floor] = _floor_influence(load, powers, (rows, late), first)
+    _add_residual(pushed, floor, first, *springs)
+    standing = (np.arange(n_steps)[:, None] * n + on_floor).ravel()
+    late = late.reshape(len(standing), 2 * floor.n_modes)
+    return Block(
+        n_steps=n_steps,
+        contact=_contact_maps(pushed.reshape(n_steps * n, -1), vehicle, n_steps, standing),
+        floor=_floor_maps(floor, load, powers, first, late, on_floor=on_floor),
+    )
+
+
+def _contact_maps(
+    pushed: Array, vehicle: VehiclePowers, n_steps: int, standing: Array
+) -> ContactMaps:
+    """Solve a block's contact forces, given what forces push at the vehicle through the floor.
+
+    With f, g for the block and f0, g0 for the step before it: ``g = A0 f0 + A f + felt`` and
+    ``f = f_rigid + T g - V0 g0 - [kE, cE] Phi^k zeta0``, where ``T = 1 - V`` is what a push at the
+    held vehicle leaves of itself.
+    """
+    size, n = pushed.shape[0], vehicle.n_contacts
+    moved = vehicle.push_by_forces(n_steps).reshape(size, size + n)
+    left = np.eye(size) - moved[:, n:]
+    before, within = pushed[:, :n], pushed[:, n:]
+    solve = np.linalg.inv(np.eye(size) - left @ within)
+    forces = np.hstack(
+        [
+            solve,
+            -solve @ vehicle.push_by_state[:size],
+            -solve @ moved[:, :n],
+            solve @ (left @ before),
+            solve @ left[:, standing],
+        ]
+    )
+    push = within @ forces
+    states = vehicle.push_by_state.shape[1]
+    push[:, size + states + n : size + states + 2 * n] += before
+    push[standing, size + states + 2 * n + np.arange(len(standing))] += 1.0
+    return ContactMaps(by_known=np.vstack([forces, push]), vehicle=vehicle.last_state(n_steps))
 
 
 def load_block(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int) -> Block:
@@ -207,12 +226,12 @@ def _points_by_forces(powers: FloorPowers, load: Array) -> Array:
 
 
 def _contact_rows(
-    floor: ModalFloor, first: int, n_steps: int, springs: tuple[Array, ...], on_floor: Array
+    floor: ModalFloor, first: int, n_steps: int, springs: tuple[Array, Array], on_floor: Array
 ) -> Array:
-    """Return what the floor's state adds to the contact forces: (2, steps, standing, modes)."""
+    """Return what the floor's state pushes at contacts: (2, steps, standing, modes)."""
     value, slope = (part[:, on_floor] for part in floor.shapes(first + 1, first + n_steps + 1))
     speed = floor.speed[first + 1 : first + n_steps + 1, on_floor, None]
-    k, c = (values[on_floor, None] for values in springs[:2])
+    k, c = (values[on_floor, None] for values in springs)
     return np.stack([k * value + (c * speed) * slope, c * value])
 
 

@@ -61,11 +61,14 @@ class ContactLaw:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Record:
-    """Hold what was seen at every step, shapes (n_steps, n_points or n_contacts, n_runs)."""
+    """Hold what was seen at every step, shapes (n_steps, n_points or n_contacts, n_runs).
 
-    displacement: Float[Array, "steps points runs"]
-    velocity: Float[Array, "steps points runs"]
-    acceleration: Float[Array, "steps points runs"]
+    The motion may go on behind the last force, see `drive_in_blocks`.
+    """
+
+    displacement: Float[Array, "seen points runs"]
+    velocity: Float[Array, "seen points runs"]
+    acceleration: Float[Array, "seen points runs"]
     forces: Float[Array, "steps contacts runs"]
 
     def columns(self, runs: slice) -> Record:

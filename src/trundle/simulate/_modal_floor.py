@@ -46,7 +46,7 @@ class ModalFloor:
         self._square, self.rows = modes.omega**2, rows
         # Only the route's dofs are read; together they stay in cache.
         used = rows.used_dofs()
-        self._route_shapes = np.ascontiguousarray(modes.shapes[used])
+        self.route_shapes = np.ascontiguousarray(modes.shapes[used])
         self._at = np.minimum(np.searchsorted(used, rows.dofs), max(0, len(used) - 1))
         self._load_share = rows.load_share.reshape(-1, self._n)
         stands = (rows.value != 0.0) | (rows.slope != 0.0)
@@ -68,10 +68,10 @@ class ModalFloor:
         fewer.n_modes, fewer.propagator = n_modes, self.propagator.first(n_modes)
         fewer.points = np.ascontiguousarray(self.points[:, :n_modes])
         fewer._square = self._square[:n_modes]
-        fewer._route_shapes = np.ascontiguousarray(self._route_shapes[:, :n_modes])
+        fewer.route_shapes = np.ascontiguousarray(self.route_shapes[:, :n_modes])
         if self._residual is not None:
             fewer._residual = self._residual.with_more(
-                self._route_shapes[:, n_modes:] / np.sqrt(self._square[n_modes:])
+                self.route_shapes[:, n_modes:] / np.sqrt(self._square[n_modes:])
             )
         return fewer
 
@@ -81,7 +81,7 @@ class ModalFloor:
 
     def static_share(self, first: int) -> Float[Array, "points dofs"]:
         """Return what modes from a first on add statically, at the points by the route's dofs."""
-        return (self.points[:, first:] / self._square[first:]) @ self._route_shapes[:, first:].T
+        return (self.points[:, first:] / self._square[first:]) @ self.route_shapes[:, first:].T
 
     def shapes(self, start: int, stop: int) -> tuple[Array, Array]:
         """Return mode shapes and slopes under the wheels, (n_steps, n_contacts, n_modes)."""
@@ -132,10 +132,10 @@ class ModalFloor:
         weights = np.concatenate([self.rows.value[part], self.rows.slope[part]])
         at = np.concatenate([self._at[part]] * 2)
         starts = np.arange(0, at.size + 1, at.shape[1])
-        shape = (len(at), len(self._route_shapes))
+        shape = (len(at), len(self.route_shapes))
         matrix = sparse.csr_array((weights.ravel(), at.ravel(), starts), shape=shape)
         matrix.eliminate_zeros()  # wheels that are not on the floor
-        both = (matrix @ self._route_shapes).reshape(2, -1, self._n, self.n_modes)
+        both = (matrix @ self.route_shapes).reshape(2, -1, self._n, self.n_modes)
         return both[0], both[1]
 
 

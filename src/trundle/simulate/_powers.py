@@ -63,6 +63,11 @@ class FloorPowers:
         """Return how many steps of its frame have gone before the block after a step."""
         return first % self.frame
 
+    def up_to(self, step: int) -> Array | None:
+        """Return the power from the state that is kept behind a step to that at it, if any."""
+        at = self.place(step)
+        return None if self._back is None or at == 0 else self.phi[at - 1]
+
     def advance(self, first: int, n_steps: int) -> Array | None:
         """Return the power that ends a frame after a block, (2, 2, modes); None within it."""
         if self._back is None:
@@ -98,12 +103,13 @@ class FloorPowers:
 
 
 class VehiclePowers:
-    """Hold a vehicle's powers over a block, as its contacts feel them."""
+    """Hold a vehicle's powers over a block, on its contact springs, as its contacts feel them."""
 
     def __init__(
         self, vehicle: ExactRecursion, contact_map: Array, push: Array, n_steps: int
     ) -> None:
         """`push` (n_contacts, 2 n_dofs) is what a state takes off the contact forces."""
+        self.n_contacts, self.push = len(contact_map), push
         powers = [np.eye(len(vehicle.phi))]
         for _ in range(n_steps):
             powers.append(vehicle.phi @ powers[-1])
@@ -117,7 +123,7 @@ class VehiclePowers:
         self._laid_out: dict[int, Array] = {}
 
     def push_by_forces(self, n_steps: int) -> Array:
-        """Return what forces take off later ones by moving the vehicle: (steps, c, steps + 1, c).
+        """Return what pushes take off later forces by moving the vehicle: (steps, c, steps + 1, c).
 
         They depend on the lag alone.
         """
@@ -130,6 +136,11 @@ class VehiclePowers:
                 out[at + lag, :, at + 1] = self._push_lag[lag]
             self._laid_out[n_steps] = out
         return self._laid_out[n_steps]
+
+    def last_state(self, n_steps: int) -> Array:
+        """Return the state after a block by the state before, and by all pushes."""
+        lags = self.lag[:n_steps][::-1]
+        return np.hstack([self.phi[n_steps - 1], self.start[n_steps - 1], *lags])
 
 
 def rows_on_state(rows: Array, power: Array) -> Array:

@@ -16,22 +16,18 @@ R. R. Craig, Structural Dynamics (1981), section 15.2 (mode-acceleration method)
 from __future__ import annotations
 
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from trundle._threads import n_threads
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, factorise
-from trundle.route import ContactRows
 from trundle.simulate._schedule import route_dofs
 from trundle.simulate.crossing import Crossing
 from trundle.structure import Floor
 
 __all__ = [
     "StaticFlexibility",
-    "add_residual_motion",
     "point_residual",
     "residual_block",
     "unit_loads",
@@ -105,57 +101,7 @@ def residual_block(
 
 def point_residual(
     flexibility: StaticFlexibility, modes: Modes, points: SparseMatrix, dofs: Int[Array, " dofs"]
-) -> Float[Array, "points all"]:
-    """Return the rows of R that give the response at points to forces at some dofs [m/N].
-
-    Columns of other dofs are zero: no force reaches them.
-    """
-    exact = flexibility.solve(np.ascontiguousarray(points.T.toarray())).T
-    out = np.zeros_like(exact)
-    modal = ((points @ modes.shapes) / modes.omega**2) @ modes.shapes[dofs].T
-    out[:, dofs] = exact[:, dofs] - modal
-    return out
-
-
-def add_residual_motion(
-    rows: ContactRows,
-    forces: Float[Array, "steps contacts runs"],
-    residual: Float[Array, "points dofs"],
-    dt: float,
-    motion: tuple[Array, Array, Array],
-) -> None:
-    """Add to a motion what the residual gives, in place.
-
-    Velocity and acceleration are central differences of the displacement.
-
-    Parameters
-    ----------
-    rows : ContactRows
-        Of the contacts at every step.
-    forces : ndarray of float, shape (n_steps, n_contacts, n_runs)
-        Contact forces [N].
-    residual : ndarray of float, shape (n_points, n_dofs)
-        Rows of R that give the response at points [m/N].
-    dt : float
-        Time step [s].
-    motion : tuple of ndarray, shapes (n_steps, n_points, n_runs)
-        Displacement, velocity and acceleration at the points.
-    """
-    n_steps, n_contacts, n_runs = forces.shape
-    influence = rows.matrix(rows.load_share[:, None] * rows.value) @ residual.T
-    influence = influence.reshape(n_steps, n_contacts, -1).transpose(0, 2, 1)
-
-    def add(start: int) -> None:
-        runs = slice(start, start + _COLUMNS)
-        displacement = influence @ np.negative(forces[:, :, runs])
-        # The floor was at rest before the record, or in the static state of its first step.
-        before = np.concatenate([displacement[:1], displacement[:-1]])
-        after = np.concatenate([displacement[1:], displacement[-1:]])
-        u, v, a = (part[:, :, runs] for part in motion)
-        v += (after - before) / (2.0 * dt)
-        a += (after - 2.0 * displacement + before) / dt**2
-        u += displacement
-
-    with ThreadPoolExecutor(n_threads()) as pool:
-        for _ in pool.map(add, range(0, n_runs, _COLUMNS)):
-            pass
+) -> Float[Array, "points dofs"]:
+    """Return the rows of R that give the response at points to forces at some dofs [m/N]."""
+    exact = flexibility.solve(np.ascontiguousarray(points.T.toarray())).T[:, dofs]
+    return exact - ((points @ modes.shapes) / modes.omega**2) @ modes.shapes[dofs].T

@@ -38,12 +38,15 @@ class Timeline:
         Station of each wheel along its route [m].
     speed : ndarray of float, shape (n_all, n_contacts)
         Speed of each wheel [m/s].
+    begin : tuple of int
+        Step at which each vehicle begins to move.
     """
 
     time: Float[Array, " steps"]
     n_run_in: int
     station: Float[Array, "steps contacts"]
     speed: Float[Array, "steps contacts"]
+    begin: tuple[int, ...]
 
 
 def timeline_of(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Timeline:
@@ -68,7 +71,11 @@ def timeline_of(crossings: tuple[Crossing, ...], dt: float, duration: float) -> 
         stations.append(front[:, None] - crossing.vehicle.setback)
         speeds.append(np.broadcast_to((law.speed(clock) * moving)[:, None], stations[-1].shape))
     return Timeline(
-        time=time, n_run_in=n_run_in, station=np.hstack(stations), speed=np.hstack(speeds)
+        time=time,
+        n_run_in=n_run_in,
+        station=np.hstack(stations),
+        speed=np.hstack(speeds),
+        begin=tuple(n_run_in + round(start / dt) for start in starts),
     )
 
 

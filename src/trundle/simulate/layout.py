@@ -37,9 +37,11 @@ from trundle.simulate._march import (
     static_start,
 )
 from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._residual import add_residual_motion, point_residual
+from trundle.simulate._point_motion import PointFilters, complete, point_filters
+from trundle.simulate._residual import point_residual
 from trundle.simulate._roads import RoadUnderWheels
 from trundle.simulate._schedule import Timeline, operator_rows, timeline_of
+from trundle.simulate._stability import check_contact_loop, step_problem
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.fitness import fitness_warnings
 from trundle.simulate.prepared import PreparedFloor, prepare
@@ -68,8 +70,10 @@ class Layout:
         Where the wheels are.
     floor : ModalFloor, FullFloor or None
         The floor under the wheels.
-    residual : tuple of ContactRows and ndarray, or None
-        Rows of the contacts, and static flexibility of the modes left out at the points.
+    residual : ndarray or None, shape (n_points, n_dofs)
+        Static flexibility of the modes left out, at the points by the route's dofs [m/N].
+    filters : PointFilters or None
+        What completes the motion at the points of a floor in its modes.
     """
 
     crossings: tuple[Crossing, ...]
@@ -78,7 +82,8 @@ class Layout:
     point_names: tuple[str, ...]
     timeline: Timeline
     floor: ModalFloor | FullFloor | None
-    residual: tuple[ContactRows, Array] | None
+    residual: Float[Array, "points dofs"] | None
+    filters: PointFilters | None
 
     @property
     def integration(self) -> Integration:
@@ -137,17 +142,14 @@ class Layout:
         n_modes = floor.count_below(f)
         if n_modes == 0:
             raise InputError(f"no mode lies below {f:g} Hz; raise it")
-        residual = None
-        if self.residual is not None:
-            rows, block = self.residual
-            block = block.copy()
-            block[:, rows.used_dofs()] += floor.static_share(n_modes)
-            residual = (rows, block)
+        residual = None if self.residual is None else self.residual + floor.static_share(n_modes)
+        fewer = floor.with_first(n_modes)
         return replace(
             self,
             method=replace(self.method, integration=replace(modal, f_max=min(f, modal.f_max))),
-            floor=floor.with_first(n_modes),
+            floor=fewer,
             residual=residual,
+            filters=point_filters(fewer, residual),
         )
 
     def over(
@@ -158,7 +160,7 @@ class Layout:
         progress: Progress | None = None,
     ) -> Record:
         """Drive over a road for every run; `weight` scales each run's static wheel loads."""
-        n_runs = road.n_runs
+        many, n_runs = self.crossings, road.n_runs
         weight = np.ones(n_runs) if weight is None else weight
         # Work is shared out in columns or by the sparse solver; threads of small products that
         # wait for each other would only take the cores.
@@ -168,8 +170,9 @@ class Layout:
             else:
                 record = drive_in_blocks(
                     Steps(
-                        springs=_springs(self.crossings),
-                        vehicle=ExactRecursion(_free_vehicles(self.crossings), self.integration.dt),
+                        vehicles=tuple((_springs((c,)), self.steps_of((c,))) for c in many),
+                        springs=_springs(many),
+                        together=self.steps_of(many),
                         timeline=self.timeline,
                     ),
                     self.floor if isinstance(self.floor, ModalFloor) else None,
@@ -179,11 +182,11 @@ class Layout:
                     static=self.static,
                     progress=progress,
                 )
-            if self.residual is not None:
-                rows, residual = self.residual
-                motion = record.displacement, record.velocity, record.acceleration
-                add_residual_motion(rows, record.forces, residual, self.integration.dt, motion)
-        return record
+            return record if self.filters is None else complete(record, self.filters)
+
+    def steps_of(self, crossings: tuple[Crossing, ...]) -> ExactRecursion:
+        """Return the steps of some vehicles on their contact springs."""
+        return ExactRecursion(_vehicles(crossings), self.integration.dt)
 
     def _step_by_step(self, road: RoadUnderWheels, progress: Progress | None) -> Record:
         assert isinstance(self.integration, Newmark)  # the caller has looked
@@ -241,6 +244,7 @@ def lay_out(
         raise InputError("an ensemble needs at least one crossing")
     if not points:
         raise InputError("name at least one point where the response is to be read")
+    _check_vehicles(many, method.integration)
     if isinstance(floor, Floor):
         floor = prepare(floor, method.integration, method.damping)
     _check_prepared(floor, method)
@@ -252,22 +256,32 @@ def lay_out(
     coupled = isinstance(method, Coupled)
     residual = None
     if floor.modes is not None and floor.residual:
-        residual = (rows, point_residual(floor.flexibility, floor.modes, reader, rows.used_dofs()))
-    return Layout(
+        residual = point_residual(floor.flexibility, floor.modes, reader, rows.used_dofs())
+    under_wheels = _floor_under_wheels(floor, rows, timeline, reader, coupled=coupled)
+    layout = Layout(
         crossings=many,
         method=method,
         doubts=fitness_warnings(many, method, floor.floor, floor.modes),
         point_names=tuple(points),
         timeline=timeline,
-        floor=_floor_under_wheels(floor, rows, timeline, reader, coupled=coupled),
+        floor=under_wheels,
         residual=residual,
+        filters=(
+            point_filters(under_wheels, residual) if isinstance(under_wheels, ModalFloor) else None
+        ),
     )
+    if coupled and isinstance(under_wheels, ModalFloor):
+        check_contact_loop(
+            under_wheels.for_one_drive(), _springs(many), layout.steps_of(many), len(layout.time)
+        )
+    return layout
 
 
 def lay_out_on_rigid_ground(
     crossing: Crossing, integration: Integration, duration: float
 ) -> Layout:
     """Lay out a crossing over rigid ground."""
+    _check_vehicles((crossing,), integration)
     return Layout(
         crossings=(crossing,),
         method=Decoupled(integration=integration, damping=ModalRatio(ratio=0.0)),
@@ -276,6 +290,7 @@ def lay_out_on_rigid_ground(
         timeline=timeline_of((crossing,), integration.dt, duration),
         floor=None,
         residual=None,
+        filters=None,
     )
 
 
@@ -316,9 +331,7 @@ def _springs(crossings: tuple[Crossing, ...]) -> Springs:
         stiffness=np.concatenate([v.contact_stiffness for v in vehicles])[:, None],
         damping=np.concatenate([v.contact_damping for v in vehicles])[:, None],
         static=np.concatenate([v.static_forces for v in vehicles])[:, None],
-        standing_stiffness=np.asarray(
-            block_diagonal(tuple(vehicle.system for vehicle in vehicles)).stiffness
-        ),
+        standing_stiffness=np.asarray(_vehicles(crossings).stiffness),
     )
 
 
@@ -326,11 +339,22 @@ def _free_vehicles(crossings: tuple[Crossing, ...]) -> LinearSystem:
     return block_diagonal(tuple(crossing.vehicle.free_system for crossing in crossings))
 
 
+def _vehicles(crossings: tuple[Crossing, ...]) -> LinearSystem:
+    return block_diagonal(tuple(crossing.vehicle.system for crossing in crossings))
+
+
 def _point_rows(floor: Floor, points: Mapping[str, tuple[float, float]]) -> SparseMatrix:
     places = np.array(list(points.values()), dtype=float).reshape(-1, 2)
     along_x = np.broadcast_to([1.0, 0.0], places.shape)
     rows = contact_rows(floor, places, along_x, shape=Hermite())
     return rows.matrix(rows.value)
+
+
+def _check_vehicles(crossings: tuple[Crossing, ...], integration: Integration) -> None:
+    if isinstance(integration, Modal):
+        for crossing in crossings:
+            if problem := step_problem(crossing.vehicle, integration.dt):
+                raise InputError(problem)
 
 
 def _check_prepared(prepared: PreparedFloor, method: Interaction) -> None:

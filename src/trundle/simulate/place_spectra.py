@@ -19,7 +19,13 @@ from threadpoolctl import ThreadpoolController
 
 from trundle._threads import n_threads
 from trundle._typing import Array
-from trundle.dynamics import ModalRecursion
+from trundle.dynamics import (
+    ModalRecursion,
+    differentiator,
+    image_filters,
+    responses_of,
+    restoring_filter,
+)
 from trundle.simulate.places import PlaceResponses
 
 __all__ = ["place_spectra"]
@@ -128,22 +134,25 @@ def _responses(
     shapes = places.route_shapes.astype(kind, copy=False)
     dt, lines = places.dt, places.frequencies
     shape = (len(lines), len(read), shapes.shape[1])
+    images = image_filters(places.propagator)[1:]
+    kept = restoring_filter()[:, None]
+    rates = [differentiator(order)[:, None] / dt**order for order in (1, 2)]
     found = tuple(np.empty(shape, np.result_type(kind, 1j)) for _ in range(1 + acceleration))
 
     def form(first: int) -> None:
         """Form the responses at some lines."""
         part = slice(first, first + _LINES)
-        z = np.exp(2j * np.pi * lines[part] * dt)[:, None]
-        # of what follows at once, stepping takes the differences
-        rates = ((z - 1.0 / z) / (2.0 * dt), (z - 2.0 + 1.0 / z) / dt**2)
-        for out, modal, rate in zip(
-            found, _modal_motion(places.propagator, z), rates, strict=False
-        ):
+        turn = 2.0 * np.pi * lines[part] * dt
+        stepped = _modal_motion(places.propagator, np.exp(1j * turn)[:, None])
+        restored = responses_of(kept, turn)
+        for out, modal, image, rate in zip(found, stepped, images, rates, strict=False):
+            whole = restored * modal + responses_of(image, turn)
             for take in (np.real, np.imag):
-                driven = take(modal).astype(kind)[:, :, None] * shapes
+                driven = take(whole).astype(kind)[:, :, None] * shapes
                 take(out)[part] = read @ driven  # both are views
             if places.residual is not None:
-                out[part] += (rate[:, :, None] * places.residual[group]).astype(out.dtype)
+                static = responses_of(rate, turn)[:, :, None] * places.residual[group]
+                out[part] += static.astype(out.dtype)
 
     _in_threads(form, range(0, len(lines), _LINES))
     return found

@@ -146,7 +146,7 @@ class Vehicle:
         state = np.block(
             [[np.zeros((n, n)), np.eye(n)], [-inverse @ s.stiffness, -inverse @ s.damping]]
         )
-        return np.linalg.eigvals(state)
+        return np.linalg.eigvals(state).astype(complex)
 
     def contact_force_transfer(
         self, f: Float[Array, " lines"], *, speed: float

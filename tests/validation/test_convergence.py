@@ -6,7 +6,7 @@ from crossings import UNDAMPED, V2_BEAM, cross, kirchhoff_plate
 from scipy.sparse.linalg import spsolve
 
 from models import simple_beam, small_floor
-from trundle.dynamics import natural_modes
+from trundle.dynamics import REACH, natural_modes
 from trundle.road import Profile
 from trundle.route import DriveIn, Route
 from trundle.simulate import (
@@ -162,7 +162,8 @@ def test_modal_tends_to_direct(record):
         modal = ensemble(
             prepared, way, method=kind(integration=integration, damping=damping), **settings
         )
-        every = fine.velocity[:, ::4]
-        error = np.abs(modal.velocity - every).max() / np.abs(every).max()
+        # the record ends under a wheel: nothing behind its last steps is known to complete them
+        every, known = fine.velocity[:, ::4], slice(-REACH)
+        error = np.abs(modal.velocity - every)[:, known].max() / np.abs(every).max()
         name = f"modal below 800 Hz against direct, {kind.__name__.lower()}, peak difference"
         record.row(name, 0.0, error, atol=1e-3, source="two methods, one answer")

@@ -29,7 +29,7 @@ from trundle.simulate import Coupled, Crossing, Decoupled, Modal, ensemble
 from trundle.structure import reference_unit
 from trundle.vehicle import articulated_truck_5_axle, container_truck_40ft
 
-CASE = "V10"
+CASE = "V10 crossing"
 SOURCE = "Runge-Kutta of order 4 on the whole system, 0.25 ms"
 SPEED = 15 / 3.6
 RATIO = 0.03

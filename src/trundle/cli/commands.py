@@ -10,6 +10,7 @@ from trundle.cli.sketch import plan_sketch
 from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
 from trundle.dynamics import natural_modes
 from trundle.errors import InputError
+from trundle.study.assumptions import early_end_warnings
 from trundle.study.build import load_study
 from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
 from trundle.vehicle import GRAVITY, VEHICLES
@@ -29,9 +30,12 @@ def check(path: Path) -> None:
         f"{study.floor.n_dofs} degrees of freedom, "
         f"{study.floor.moving_mass() / 1e3:.0f} t moving vertically"
     )
-    print(f"work:  {cells} cells of {study.runs} runs, records of {study.duration:g} s")
+    print(f"work:  {cells} cells of {study.runs} runs, records of up to {study.longest_record:g} s")
     for method in study.methods:
         print(f"method {method.name!r}: {method.interaction}; entry: {method.entry}")
+    for case in study.cases:
+        for warning in early_end_warnings(study, case):
+            print(f"warning: {warning}")
     print(plan_sketch(study))
 
 

@@ -10,7 +10,7 @@ from typing import TypeVar
 from trundle._checks import one_of
 from trundle.cli.screen import print_table, progress_bar
 from trundle.errors import InputError
-from trundle.report import PARTLY, mitigation_rows, write_mitigation_report
+from trundle.report import PARTLY, UNKNOWN, mitigation_rows, write_mitigation_report
 from trundle.road import CLASS_NAMES
 from trundle.signals import Isolator
 from trundle.study.build import load_study
@@ -149,5 +149,5 @@ def _print(sweep: Sweep) -> None:
                     for speed in sweep.speeds
                 ),
             )
-    if any(title.endswith("*") for title in found.values()):
+    if UNKNOWN in found.values():
         print(PARTLY)

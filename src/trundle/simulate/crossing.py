@@ -82,6 +82,12 @@ class Crossing:
         way = self.route.length - self.lead + self.vehicle.length
         return self.depart + self.route.law.time_to(way)
 
+    def wheels_on_floor(self, time: float) -> int:
+        """Return how many of the wheels stand on the route at a time."""
+        front = self.lead + float(self.route.law.distance(time - self.depart))
+        station = front - self.vehicle.setback
+        return int(np.count_nonzero((station >= 0.0) & (station <= self.route.length)))
+
     def front_axle(self, time: float) -> tuple[float, float] | None:
         """Return where the front axle stands at a time [m], or None when it is off the route."""
         station = self.lead + float(self.route.law.distance(time - self.depart))

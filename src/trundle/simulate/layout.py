@@ -42,8 +42,9 @@ from trundle.simulate._residual import point_residual
 from trundle.simulate._roads import RoadUnderWheels
 from trundle.simulate._schedule import Timeline, operator_rows, timeline_of
 from trundle.simulate._stability import check_contact_loop, step_problem
+from trundle.simulate.coverage import Coverage, coverage_of
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
-from trundle.simulate.fitness import fitness_warnings
+from trundle.simulate.fitness import fitness_warnings, resolved_to
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.structure import Floor
 
@@ -108,10 +109,13 @@ class Layout:
 
     @property
     def f_max(self) -> float:
-        """Highest frequency that the computation contains [Hz]."""
-        nyquist = 0.5 / self.integration.dt
-        modal = self.integration
-        return min(modal.f_max, nyquist) if isinstance(modal, Modal) else nyquist
+        """Highest frequency that modes and step show as it is [Hz]."""
+        return resolved_to(self.integration)
+
+    @property
+    def coverage(self) -> Coverage:
+        """Which bands the roads excite, and whether the vehicles have left at the end."""
+        return coverage_of(self.crossings, float(self.time[-1]))
 
     @property
     def time(self) -> Float[Array, " steps"]:

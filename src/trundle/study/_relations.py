@@ -132,11 +132,12 @@ def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[
                 f"{500.0 / integration.f_max:g} ms (two samples a period)",
                 remedy="shorten dt, or lower f_max",
             )
-        if file.general is not None and integration.dt > file.general.duration / 10.0:
+        duration = None if file.general is None else file.general.duration
+        if duration is not None and integration.dt > duration / 10.0:
             yield Problem(
                 place=f"method[{i + 1}].dt",
                 value=f"{1e3 * integration.dt:g} ms",
-                rule=f"a record of {file.general.duration:g} s needs at least 10 steps",
+                rule=f"a record of {duration:g} s needs at least 10 steps",
                 remedy="shorten dt; 5 ms shows bands up to 80 Hz",
             )
     yield from _assessed_step(file, methods)
@@ -201,7 +202,7 @@ def _roughness(
                     f"{limit:.3g} 1/m only, and the road's begin at {band.n_min:g} 1/m",
                     remedy="shorten dt, or lower n_min or the speed",
                 )
-            elif not follows_dt and band.n_max > limit * (1 + 1e-9):
+            elif not follows_dt and (method.band or band).n_max > limit * (1 + 1e-9):
                 yield Problem(
                     place="roughness.n_max",
                     value=f"{band.n_max:g} 1/m",
@@ -229,12 +230,14 @@ def _sizes(
             rule="what is kept of every run would not fit in memory",
             remedy=f"use at most {int(_MAX_HISTORY / kept)} runs, or fewer points",
         )
+    ways = (d.route.law.time_to(d.route.length + 2.0 * d.vehicle.length) for d in drives.values())
+    duration = file.general.duration or max(ways, default=0.0) + 5.0
     for method in methods.values():
-        steps = file.general.duration / method.interaction.integration.dt
+        steps = duration / method.interaction.integration.dt
         if steps > _MAX_STEPS:
             yield Problem(
                 place="duration",
-                value=f"{file.general.duration:g} s",
+                value=f"{duration:g} s",
                 rule=f"method {method.name!r} would take {steps:.3g} steps; "
                 f"the limit is {_MAX_STEPS}",
                 remedy="shorten the duration, or lengthen dt",
@@ -242,7 +245,7 @@ def _sizes(
         elif steps * per_step > _MAX_HISTORY:
             yield Problem(
                 place="duration",
-                value=f"{file.general.duration:g} s",
+                value=f"{duration:g} s",
                 rule=f"the histories of method {method.name!r} would not fit in memory, even of "
                 f"{LEAST_BATCH} runs at a time",
                 remedy="use fewer points, a shorter record, or a longer dt",

@@ -179,7 +179,6 @@ class _Passages:
 
     runs: Runs
     mean: MeanResponse
-    excited_to: float
 
 
 def _slab(study: Study, thickness: float | None) -> _Slab:
@@ -239,8 +238,7 @@ def _passages(tried: _Tried, case: Case, speed: float, runs: int) -> _Passages:
         duration=study.long_enough(crossings),
     )
     found, mean = runs_with_mean(layout, runs=range(runs), seed=study.seed)
-    excited_to = min(speed * crossing.band.n_max for crossing in crossings)
-    return _Passages(runs=found, mean=mean, excited_to=excited_to)
+    return _Passages(runs=found, mean=mean)
 
 
 def _outcomes(
@@ -273,9 +271,10 @@ def _outcomes(
                 assessment.criteria,
                 percentile=assessment.percentile,
                 top=min(runs.f_max, runs.sampling_frequency / 2.5),
+                coverage=runs.coverage,
                 events=assessment.events,
             ),
-            excited_to=passages.excited_to,
+            excited_to=runs.coverage.excited_to,
             warnings=(*contact_warnings(float(one.tension.any(axis=1).mean())), *doubts),
         )
         for road, one in zip(tried.classes, reduced, strict=True)

@@ -16,7 +16,7 @@ from trundle.response import (
     SpectrumQuantity,
     join,
 )
-from trundle.simulate import Runs, TruncationChange
+from trundle.simulate import Coverage, Runs, TruncationChange
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
 from trundle.study.cells import EXACT_SHARES, Cell, CellKey, History
 
@@ -77,6 +77,7 @@ def runs_piece(
         "quantities": [spectra.quantity for spectra in _spectra(reduced[0])],
         "point_names": list(runs.point_names),
         "contact_names": list(runs.contact_names),
+        "coverage": runs.coverage.as_notes(),
         "top": min(runs.f_max, runs.sampling_frequency / 2.5),
         "warnings": [[w.subject, w.message] for w in runs.warnings if w.subject != LOST_CONTACT],
     }
@@ -135,6 +136,7 @@ def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> 
             time=first["time"], **{name: first[f"{road}.history.{name}"] for name in _HISTORY}
         ),
         top=float(notes["top"]),
+        coverage=Coverage.from_notes(notes["coverage"]),
         warnings=(
             *pulling,
             *_quadrature_warnings(key, exact),

@@ -68,7 +68,7 @@ class GeneralSection(Section):
     title: Annotated[Line, Field(max_length=200)]
     seed: Annotated[Whole, Field(ge=0, lt=2**63)]
     runs: Annotated[Whole, Field(ge=1, le=_MANY)]
-    duration: Time
+    duration: Time | None = None
 
 
 class ReferenceFloorSection(Section):
@@ -245,6 +245,8 @@ class MethodSection(Section):
     f_max: Frequency | None = None
     precision: Literal["double", "single"] = "double"
     dt: Time
+    n_max: Wavenumber | None = None
+    contact_patch: NonNegativeLength | None = None
     damping: DampingSection
     contact: Literal["smooth", "hat"] = "smooth"
     entry: Literal["drive_in", "ramp", "static"] = "drive_in"

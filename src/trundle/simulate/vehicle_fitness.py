@@ -50,6 +50,6 @@ def _cannot_hop(vehicle: Vehicle, highest: float) -> FitnessWarning:
         subject=f"axle hop, {vehicle.name}",
         message=f"this vehicle has no unsprung masses and moves by itself at {highest:.3g} Hz at "
         f"most; axles that hop at {_HOP[0]:g} to {_HOP[1]:g} Hz press harder there, and margins "
-        "that those bands govern may be 1.3 to 3 times too high; drive one with unsprung masses too: "
-        "'trundle vehicles' lists them, or give the axles an axle_mass and a tyre_stiffness",
+        "that those bands govern may be 1.3 to 3 times too high; drive one with unsprung masses "
+        "too: 'trundle vehicles' lists them, or give the axles an axle_mass and a tyre_stiffness",
     )

@@ -97,9 +97,9 @@ def test_the_last_wheel_leaves_at_the_exit_time():
 
 
 def long_car():
-    from trundle.vehicle import articulated_truck_5_axle
+    from trundle.vehicle import library_vehicle
 
-    return articulated_truck_5_axle()
+    return library_vehicle("tractor_3axle_semitrailer_6_axle_worn")
 
 
 def test_every_route_has_a_road_of_its_own():

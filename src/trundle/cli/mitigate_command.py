@@ -19,7 +19,7 @@ from trundle.study.mitigation import try_changes
 from trundle.study.store import check_target, mark_results, new_results_folder
 from trundle.study.sweep import Sweep
 from trundle.units import KMH, to_si
-from trundle.vehicle import VEHICLES
+from trundle.vehicle import library_vehicle
 
 __all__ = ["mitigate"]
 
@@ -65,9 +65,8 @@ def mitigate(
 
 def _levers(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[list[Change]]:
     """Return the changes of each kind together."""
-    names = _each("--vehicle", vehicles, lambda text: one_of("--vehicle", text, VEHICLES))
     levers = [
-        [Change(label=name.replace("_", " "), vehicle=VEHICLES[name]()) for name in names],
+        _each("--vehicle", vehicles, _vehicle),
         [
             Change(label=f"slab {1e3 * slab:g} mm", slab_thickness=slab)
             for slab in _each("--slab", slabs, _slab)
@@ -88,6 +87,10 @@ def _levers(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[li
             if times > 1:
                 raise InputError(f"{option}: {label} stands there {times} times; once is enough")
     return levers
+
+
+def _vehicle(text: str) -> Change:
+    return Change(label=text.replace("_", " "), vehicle=library_vehicle(text))
 
 
 def _slab(text: str) -> float:

@@ -9,6 +9,7 @@ from trundle.errors import FitnessWarning
 from trundle.road import FITTED_RANGE, RoadClass
 from trundle.route import Hat
 from trundle.simulate.crossing import Crossing, Integration, Interaction
+from trundle.simulate.vehicle_fitness import axle_hop_warnings
 from trundle.structure import Floor
 
 __all__ = ["LOST_CONTACT", "contact_warnings", "fitness_warnings", "resolved_to"]
@@ -46,6 +47,7 @@ def fitness_warnings(
         *_time_step(method),
         *_truncation(method),
         *_rayleigh(method),
+        *axle_hop_warnings(crossings),
         *(warning for crossing in crossings for warning in _extrapolation(crossing)),
     ]
     if isinstance(method.contact, Hat):

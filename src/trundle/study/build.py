@@ -234,6 +234,8 @@ class _Builder:
             kind = Coupled if section.interaction == "coupled" else Decoupled
             contact = Hat() if section.contact == "hat" else Hermite()
             made = kind(integration=integration, damping=damping, contact=contact)
+            if section.entry == "abrupt" and section.entry_length is not None:
+                self.problems.append(_length_of_nothing(place, section.entry_length))
             default = _DEFAULT_DRIVE_IN if section.entry == "drive_in" else mesh_size
             entry = entry_of(section.entry, section.entry_length or default)
             own = None if band is None else self._own_band(section, place, band)
@@ -390,6 +392,15 @@ class _Builder:
                 remedy=f"there are: {', '.join(known) or 'none'}",
             )
         )
+
+
+def _length_of_nothing(place: str, length: float) -> Problem:
+    return Problem(
+        place=f"{place}.entry_length",
+        value=f"{length:g} m",
+        rule="an abrupt entry has no length",
+        remedy='remove entry_length, or set entry = "drive_in" or "ramp"',
+    )
 
 
 def _ratio_with_newmark(place: str) -> Problem:

@@ -9,7 +9,7 @@ import numpy as np
 
 from trundle.criteria import Criterion
 from trundle.road import RoadClass, RoughnessBand
-from trundle.route import ConstantSpeed, DriveIn, Entry, Ramp, Route, StaticStart
+from trundle.route import Abrupt, ConstantSpeed, DriveIn, Entry, Ramp, Route, StaticStart
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.structure import Floor, FloorPlan
@@ -77,7 +77,7 @@ class MethodPlan:
         Name in the study.
     interaction : Decoupled or Coupled
         The method.
-    entry : Ramp, DriveIn or StaticStart
+    entry : Ramp, DriveIn, StaticStart or Abrupt
         How wheels come onto the floor.
     band : RoughnessBand or None
         Waves of its own; those of the study unless given.
@@ -266,6 +266,8 @@ def entry_of(kind: str, length: float) -> Entry:
         return Ramp(length=length)
     if kind == "static":
         return StaticStart(exit_length=length)
+    if kind == "abrupt":
+        return Abrupt()
     return DriveIn(length=length)
 
 

@@ -5,7 +5,7 @@ Every section is checked by itself, so that the mistakes of all of them come at 
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
@@ -36,6 +36,7 @@ from trundle.study.fields import (
     Wavenumber,
     Whole,
 )
+from trundle.vehicle import VEHICLES
 
 __all__ = [
     "CriteriaSection",
@@ -166,10 +167,16 @@ class PlanarVehicleSection(Section):
     hinges: tuple[HingeSection, ...] = ()
 
 
+if TYPE_CHECKING:
+    LibraryKind: TypeAlias = str
+else:  # the names are known only when the folder of vehicles has been read
+    LibraryKind = Literal[tuple(VEHICLES)]
+
+
 class LibraryVehicleSection(Section):
     """A vehicle of the library."""
 
-    kind: Literal["container_truck_40ft", "articulated_truck_5_axle"]
+    kind: LibraryKind
 
 
 VehicleSection: TypeAlias = Annotated[
@@ -249,7 +256,7 @@ class MethodSection(Section):
     contact_patch: NonNegativeLength | None = None
     damping: DampingSection
     contact: Literal["smooth", "hat"] = "smooth"
-    entry: Literal["drive_in", "ramp", "static"] = "drive_in"
+    entry: Literal["drive_in", "ramp", "static", "abrupt"] = "drive_in"
     entry_length: PositiveLength | None = None
 
 

@@ -9,7 +9,7 @@ from trundle.road.iso8608 import (
     RoughnessLevel,
     class_limits,
 )
-from trundle.road.profile import Profile, ProfileReader
+from trundle.road.profile import Beyond, Profile, ProfileReader
 from trundle.road.survey import RoughnessFit, classify, fit_roughness, roughness_index
 from trundle.road.synthesis import RoughnessBand, synthesise, wave_power
 from trundle.road.temporal import temporal_psd, temporal_psd_two_sided
@@ -20,6 +20,7 @@ __all__ = [
     "FITTED_RANGE",
     "REFERENCE_ANGULAR_FREQUENCY",
     "REFERENCE_FREQUENCY",
+    "Beyond",
     "Profile",
     "ProfileReader",
     "RoadClass",

@@ -9,6 +9,7 @@ from trundle.road.iso8608 import (
     RoughnessLevel,
     class_limits,
 )
+from trundle.road.plausibility import profile_doubts
 from trundle.road.profile import Beyond, Profile, ProfileReader
 from trundle.road.survey import RoughnessFit, classify, fit_roughness, roughness_index
 from trundle.road.synthesis import RoughnessBand, synthesise, wave_power
@@ -30,6 +31,7 @@ __all__ = [
     "class_limits",
     "classify",
     "fit_roughness",
+    "profile_doubts",
     "roughness_index",
     "synthesise",
     "synthesise_tracks",

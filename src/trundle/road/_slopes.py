@@ -12,7 +12,9 @@ from trundle.errors import InputError
 
 __all__ = ["check_order", "limited_slopes", "measured_points"]
 
-_LIMIT = 3.0  # Fritsch and Carlson (1980): a cubic with no steeper ends than this is monotone
+_CHORDS = 3.0  # a cubic with ends no steeper than this many chords is monotone
+_PARABOLAS = 1.5
+_UNEVEN = 3.0  # times the narrowest of four intervals
 
 
 def measured_points(
@@ -65,20 +67,36 @@ def limited_slopes(
     Notes
     -----
     A spline through a step swings on both sides of it, and the more so the closer two points
-    stand. Each slope is therefore held to three times the lesser of the two chords that meet
-    at its point, and to their sign where they agree (Hyman's filter). Through points that show
-    the waves they are taken from nothing is held, and the curve is the spline itself.
+    stand. Each slope is therefore held between 0 and the larger of three times the lesser of
+    the chords that meet at its point, and 1.5 times the lesser of the slopes there of the
+    parabolas through it and the two points on either side; 0 where their signs differ. Through
+    points that show the waves they are taken from nothing is held, and the curve is the spline.
+    Where points are uneven a parabola swings too, and the chords alone count.
 
     References
     ----------
-    J. M. Hyman, Accurate monotonicity preserving cubic interpolation, SIAM J. Sci. Stat.
-    Comput. 4 (1983) 645-654, equation 2.6.
+    H. T. Huynh, Accurate monotone cubic interpolation, SIAM J. Numer. Anal. 30 (1993) 57-100,
+    equations 3.21 to 3.26.
     """
     slope = CubicSpline(station, elevation)(station, 1)
-    chord = np.diff(elevation) / np.diff(station)
-    before, after = np.concatenate([chord[:1], chord]), np.concatenate([chord, chord[-1:]])
-    most = _LIMIT * np.minimum(np.abs(before), np.abs(after))
-    agree = before * after > 0.0
-    low = np.where(agree & (before > 0.0), 0.0, -most)
-    high = np.where(agree & (before < 0.0), 0.0, most)
-    return np.clip(slope, low, high)
+    width, chord = (_continued(v) for v in (np.diff(station), np.diff(elevation)))
+    chord = chord / width
+    # of each point: the second interval before it, the first, the first and second behind it
+    h, d = (np.stack([v[i : len(v) - 3 + i] for i in range(4)]) for v in (width, chord))
+    before = d[1] + h[1] * (d[1] - d[0]) / (h[0] + h[1])
+    behind = d[2] - h[2] * (d[3] - d[2]) / (h[2] + h[3])
+    even = h.max(axis=0) < _UNEVEN * h.min(axis=0)
+    limit = _CHORDS * _lesser(d[1], d[2])
+    by_parabolas = np.where(even, _PARABOLAS * _lesser(before, behind), 0.0)
+    limit = np.where(np.abs(by_parabolas) > np.abs(limit), by_parabolas, limit)
+    return np.clip(slope, np.minimum(limit, 0.0), np.maximum(limit, 0.0))
+
+
+def _continued(values: Array) -> Array:
+    """Repeat the values of the first and last intervals twice beyond the ends."""
+    return np.pad(values, 2, mode="edge")
+
+
+def _lesser(a: Array, b: Array) -> Array:
+    """Return the value nearer to 0 of two of one sign, 0 for two of different signs."""
+    return np.where(a * b > 0.0, np.sign(a) * np.minimum(np.abs(a), np.abs(b)), 0.0)

@@ -202,7 +202,7 @@ class Profile:
         inside = np.clip(np.where(turned, last - along, first + along), first, last)
         z, slope = ProfileReader(self.station, inside).read(self.elevation, self.slope)
         z0, z1 = self.elevation[0], self.elevation[-1]
-        return fold * (z1 - z0) + np.where(turned, z0 + z1 - z, z), slope
+        return np.asarray(fold * (z1 - z0) + np.where(turned, z0 + z1 - z, z)), slope
 
     def _with_margin(self, length: float) -> Points:
         """Return the points with what lies a length beyond either end, if that is known."""

@@ -8,16 +8,17 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array
-from trundle.errors import InputError
-from trundle.road import Profile
-from trundle.simulate._profile_step import check_profile_step
+from trundle.errors import FitnessWarning, InputError
+from trundle.road import Profile, profile_doubts
+from trundle.simulate._profile_step import check_profile_step, hidden_by_step
 from trundle.simulate._schedule import Timeline, timeline_of
 from trundle.simulate.crossing import Crossing
 from trundle.vehicle import Vehicle
 
-__all__ = ["GivenRoad", "check_given_roads", "given_road"]
+__all__ = ["GivenRoad", "given_road", "given_road_doubts"]
 
 _ROUNDING = 1e-6  # m; a profile may end so little before the last wheel
+_HIDDEN = 0.003  # of a static wheel force, what a step hides without a word
 _PLANE = 1e-6  # of its stiffness, what a motion without spring forces may have
 
 
@@ -44,25 +45,37 @@ class GivenRoad:
     slope: Float[Array, "steps contacts"]
 
 
-def check_given_roads(crossings: tuple[Crossing, ...], dt: float, duration: float | None) -> None:
-    """Refuse given profiles that a run would refuse, before a floor is prepared for it.
+def given_road_doubts(
+    crossings: tuple[Crossing, ...], dt: float, duration: float | None = None
+) -> tuple[FitnessWarning, ...]:
+    """Return the doubts about given profiles; refuse those that a run would refuse.
 
     Parameters
     ----------
     crossings : tuple of Crossing
-        Who drives where.
+        Who drives where; random roads are passed over.
     dt : float
         Time step [s].
     duration : float or None
         Length of the record [s]; until the last wheel has left unless given.
     """
+    found: list[FitnessWarning] = []
     for crossing in crossings:
-        if not isinstance(crossing.road, Profile):
-            continue
         length = crossing.exit_time if duration is None else duration
-        if np.isfinite(length):
-            timeline = timeline_of((crossing,), dt, max(length, 2.0 * dt))
-            given_road(crossing, timeline, slice(0, crossing.vehicle.n_contacts))
+        if not isinstance(crossing.road, Profile) or not np.isfinite(length):
+            continue
+        timeline = timeline_of((crossing,), dt, max(length, 2.0 * dt))
+        lying = _lay(crossing, timeline, slice(0, crossing.vehicle.n_contacts))
+        hidden = hidden_by_step(crossing, lying.road, lying.needed, speed=lying.speed, dt=dt)
+        if hidden.force > _HIDDEN:
+            found.append(
+                FitnessWarning(
+                    subject=f"road between steps, {crossing.route.name}",
+                    message=f"{hidden}; a shorter step, or the tyre's contact patch, would show it",
+                )
+            )
+        found += profile_doubts(crossing.road)
+    return tuple(found)
 
 
 def given_road(crossing: Crossing, timeline: Timeline, columns: slice) -> GivenRoad:
@@ -74,23 +87,46 @@ def given_road(crossing: Crossing, timeline: Timeline, columns: slice) -> GivenR
         A profile that does not cover the way that the wheels need, or that rises and falls
         within a step.
     """
-    assert isinstance(crossing.road, Profile)  # the caller has looked
-    profile = crossing.road.averaged(crossing.band.contact_patch)
-    # In chainage from here on: stations are those of the profile, as its owner knows them.
-    station = timeline.station[:, columns] + crossing.chainage
-    needed = _needed(crossing, station)
-    _check_cover(crossing, profile, needed)
-    # Behind the last wheel's leaving nothing is asked of the road, so it may go on anyhow.
-    whole = replace(profile, beyond="mirror") if profile.beyond == "unknown" else profile
-    speed = float(timeline.speed[:, columns].max())
-    dt = float(timeline.time[1] - timeline.time[0])
-    check_profile_step(crossing, whole, needed, speed=speed, dt=dt)
-    elevation, slope = whole.at(station)
-    slope = _over_kinks(whole, station, slope)
-    level, grade = _plane(crossing.vehicle, profile, station[0], speed)
+    lying = _lay(crossing, timeline, columns)
+    station, road = lying.station, lying.road
+    elevation, slope = road.at(station)
+    slope = _over_kinks(road, station, slope)
+    level, grade = _plane(crossing.vehicle, lying)
     return GivenRoad(
         elevation=elevation - level - grade * (station - station[0, 0]), slope=slope - grade
     )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Lying:
+    """A profile under a crossing's wheels, with stations in the profile's own chainage."""
+
+    road: Profile  # averaged by the tyre, and known everywhere
+    first: float  # station before which nothing was known of it [m]
+    station: Array  # (n_all, n_contacts) [m]
+    needed: tuple[float, float]  # from the first wheel's start to the last wheel's leaving [m]
+    speed: float  # the largest [m/s]
+
+
+def _lay(crossing: Crossing, timeline: Timeline, columns: slice) -> _Lying:
+    """Lay the profile under the wheels, and refuse it where it cannot be right."""
+    assert isinstance(crossing.road, Profile)  # the caller has looked
+    profile = crossing.road.averaged(crossing.band.contact_patch)
+    station = timeline.station[:, columns] + crossing.chainage
+    needed = _needed(crossing, station)
+    _check_cover(crossing, profile, needed)
+    known = profile.beyond != "unknown"
+    lying = _Lying(
+        # Behind the last wheel's leaving nothing is asked of the road, so it may go on anyhow.
+        road=profile if known else replace(profile, beyond="mirror"),
+        first=-np.inf if known else float(profile.station[0]),
+        station=station,
+        needed=needed,
+        speed=float(timeline.speed[:, columns].max()),
+    )
+    dt = float(timeline.time[1] - timeline.time[0])
+    check_profile_step(crossing, lying.road, needed, speed=lying.speed, dt=dt)
+    return lying
 
 
 def _needed(crossing: Crossing, station: Array) -> tuple[float, float]:
@@ -161,17 +197,16 @@ def _kinks(profile: Profile) -> Array:
     return np.sort(jumps)
 
 
-def _plane(vehicle: Vehicle, profile: Profile, start: Array, speed: float) -> tuple[float, float]:
+def _plane(vehicle: Vehicle, lying: _Lying) -> tuple[float, float]:
     """Return the elevation under the front wheel [m], and the grade come along [m/m].
 
     The grade is the mean under all wheels over the way that each has come in one period of
     the vehicle's slowest motion, as far as it is known.
     """
-    known = profile.beyond != "unknown"
-    first = -np.inf if known else float(profile.station[0])
+    start, profile = lying.station[0], lying.road
     slowest = float(np.abs(vehicle.poles()).min(initial=np.inf))
-    back = speed * 2.0 * np.pi / slowest if slowest > 0.0 else 0.0
-    behind = np.maximum(start - back, first)
+    back = lying.speed * 2.0 * np.pi / slowest if slowest > 0.0 else 0.0
+    behind = np.minimum(np.maximum(start - back, lying.first), start)
     here, steep = profile.at(start)
     way = start - behind
     some = way > _ROUNDING

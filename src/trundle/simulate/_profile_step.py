@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import signal
 
@@ -10,9 +12,9 @@ from trundle.errors import InputError
 from trundle.road import Profile
 from trundle.simulate.crossing import Crossing
 
-__all__ = ["check_profile_step"]
+__all__ = ["Hidden", "check_profile_step", "hidden_by_step"]
 
-_MISSED = 0.02  # of a wheel's static force, what a step may hide
+_MOST = 0.03  # of a wheel's static force, what a step may hide
 _SPARSE = 4.0  # steps between two points of a profile, above which nothing is hidden
 _FINE = 8  # samples a step on which the road is looked at
 _STOP = 0.6  # waves a step at which the filter stops; half a wave is the most that a step shows
@@ -22,10 +24,37 @@ _AROUND = 40.0  # steps on either side of the worst place, tried with shorter st
 _HALVINGS = 8
 
 
-def check_profile_step(
+@dataclass(frozen=True, kw_only=True)
+class Hidden:
+    """Hold the most that a profile does to a wheel between the ends of a step.
+
+    Attributes
+    ----------
+    height : float
+        Height that no step sees [m].
+    station : float
+        Where that is [m].
+    force : float
+        Force of it, over the static force of a wheel.
+    """
+
+    height: float
+    station: float
+    force: float
+
+    def __str__(self) -> str:
+        """Describe it for a message."""
+        return (
+            f"near station {self.station:.6g} m the given profile rises or falls by "
+            f"{1e3 * self.height:.2g} mm unseen between two steps, "
+            f"{100 * self.force:.2g} % of a static wheel force"
+        )
+
+
+def hidden_by_step(
     crossing: Crossing, profile: Profile, needed: tuple[float, float], *, speed: float, dt: float
-) -> None:
-    """Refuse a time step between whose ends a profile rises and falls unseen.
+) -> Hidden:
+    """Return the most that a profile does to a wheel between the ends of a step.
 
     Parameters
     ----------
@@ -43,9 +72,9 @@ def check_profile_step(
     Notes
     -----
     The road is split at half a wave a step, the shortest that samples can hold (as with random
-    roads). What is left above it, times a contact's stiffness, is a force that no step sees:
-    2 % of the static force is allowed. For a damper, a tenth of what it would add within a step
-    counts: kinks are within its reach, for the slope over them is a mean.
+    roads). What is left above it, times a contact's stiffness, is a force that no step sees. Of
+    a damper, a tenth of what it would add within a step counts: its impulse is kept by
+    `given_road`, which takes the mean slope over kinks.
     """
     stride = speed * dt
     spacing = np.diff(profile.station)
@@ -54,26 +83,47 @@ def check_profile_step(
     # a mirror image has its points at the same distances
     counted = spacing[spacing > 0.0] if profile.beyond == "mirror" else spacing[driven]
     if stride == 0.0 or counted.min(initial=np.inf) > _SPARSE * stride:
+        return Hidden(height=0.0, station=low, force=0.0)
+    height, at = _hidden(profile, low, high, stride)
+    return Hidden(height=height, station=at, force=_force(crossing, height, dt))
+
+
+def check_profile_step(
+    crossing: Crossing, profile: Profile, needed: tuple[float, float], *, speed: float, dt: float
+) -> None:
+    """Refuse a time step between whose ends a profile does much to a wheel.
+
+    Parameters are those of `hidden_by_step`.
+
+    Raises
+    ------
+    InputError
+        A step that hides more than 3 % of a static wheel force; with a step that would not.
+    """
+    hidden = hidden_by_step(crossing, profile, needed, speed=speed, dt=dt)
+    if hidden.force <= _MOST:
         return
-    hidden, at = _hidden(profile, low, high, stride)
-    if (force := _force(crossing, hidden, dt)) <= _MISSED:
-        return
-    area = (max(low, at - _AROUND * stride), min(high, at + _AROUND * stride))
-    enough = dt
-    for _ in range(_HALVINGS):
-        enough *= 0.5
-        if _force(crossing, _hidden(profile, *area, speed * enough)[0], enough) <= _MISSED:
-            remedy = f"shorten the time step to {1e3 * enough:.2g} ms"
-            break
-    else:
-        remedy = "draw the step's two stations apart by its chamfer"
-    raise InputError(
-        f"route {crossing.route.name!r}: near station {at:.6g} m the given profile rises or falls "
-        f"by {1e3 * hidden:.2g} mm within the {1e3 * stride:.3g} mm that a wheel moves in a step "
-        f"(dt = {1e3 * dt:g} ms at {speed:.3g} m/s), which hides {100 * force:.2g} % of a static "
-        f"wheel force where at most {100 * _MISSED:g} % is allowed: {remedy}, or let the tyre "
-        "average the road, RoughnessBand(contact_patch=0.2) or what it stands on"
+    around = _AROUND * speed * dt
+    area = (max(needed[0], hidden.station - around), min(needed[1], hidden.station + around))
+    finer = (dt * 0.5**i for i in range(1, _HALVINGS + 1))
+    enough = next((f for f in finer if _shows(crossing, profile, area, speed=speed, dt=f)), None)
+    remedy = (
+        "draw the two ends of a vertical step apart by its chamfer"
+        if enough is None
+        else f"shorten the time step to {1e3 * enough:.3g} ms"
     )
+    raise InputError(
+        f"route {crossing.route.name!r}: {hidden}, where at most {100 * _MOST:g} % is allowed; a "
+        f"wheel at {speed:.3g} m/s moves {1e3 * speed * dt:.3g} mm in a step of {1e3 * dt:g} ms: "
+        f"{remedy}, or let the tyre average the road over what it stands on, "
+        "RoughnessBand(contact_patch=0.2)"
+    )
+
+
+def _shows(
+    crossing: Crossing, profile: Profile, area: tuple[float, float], *, speed: float, dt: float
+) -> bool:
+    return _force(crossing, _hidden(profile, *area, speed * dt)[0], dt) <= _MOST
 
 
 def _force(crossing: Crossing, hidden: float, dt: float) -> float:

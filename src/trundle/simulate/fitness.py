@@ -6,7 +6,7 @@ import numpy as np
 
 from trundle.dynamics import Modal, Modes, Newmark, Rayleigh
 from trundle.errors import FitnessWarning
-from trundle.road import FITTED_RANGE, Profile, RoadClass, profile_doubts
+from trundle.road import FITTED_RANGE, RoadClass
 from trundle.route import Hat
 from trundle.simulate.crossing import Crossing, Interaction
 from trundle.structure import Floor
@@ -45,12 +45,6 @@ def fitness_warnings(
         *_truncation(method),
         *_rayleigh(method),
         *(warning for crossing in crossings for warning in _extrapolation(crossing)),
-        *(
-            w
-            for way in crossings
-            if isinstance(way.road, Profile)
-            for w in profile_doubts(way.road)
-        ),
     ]
     if isinstance(method.contact, Hat):
         found += [w for crossing in crossings for w in _mesh_passing(crossing, floor, modes)]

@@ -18,7 +18,7 @@ from trundle.units import KMH
 from trundle.vehicle import container_truck_40ft, quarter_car, sprung_mass
 
 DT = 0.005  # production's
-HEAVY = {"mass": 1e9, "stiffness": 1e6, "damping": 2e4}  # so heavy that it stands still
+HEAVY = {"mass": 1e12, "stiffness": 1e6, "damping": 2e4}  # so heavy that it stands still
 
 
 def way(road, *, vehicle=None, speed=15 * KMH, run_in=0.0, length=52.0, **more):
@@ -66,20 +66,23 @@ def test_a_profile_in_its_own_chainage_is_refused_until_it_is_laid(run_in):
 
 def test_what_the_message_offers_is_enough():
     """The least and the greatest chainage named, and the run-in named, are taken."""
-    for chainage in (540.92, 715.50):  # 478 + 62.92 and 778.00 - 62.50 of the message
-        forces(way(rough(478.0), run_in=None, chainage=chainage), duration=20.0)
-    short = rough(-30.0)  # truck 9.2 m
-    with pytest.raises(InputError, match=r"shorten the run-in to run_in=20.7 m"):
-        forces(way(short, run_in=None))
-    forces(way(short, run_in=20.7))
+    surveyed = rough(478.0)  # to 778 m; the truck is 12.5 m long
+    with pytest.raises(InputError, match=r"chainage=\) from 540.92 to 713.50 m"):
+        forces(way(surveyed, run_in=None), duration=20.0)
+    for chainage in (540.92, 713.50):
+        forces(way(surveyed, run_in=None, chainage=chainage), duration=20.0)
+    short = rough(-30.0, length=96.0)
+    with pytest.raises(InputError, match=r"shorten the run-in to run_in=17.4 m"):
+        forces(way(short, run_in=None), duration=20.0)
+    forces(way(short, run_in=17.4), duration=20.0)
 
 
-@pytest.mark.parametrize(("low", "high"), [(-9.0, 120.0), (-80.0, 60.0)])
+@pytest.mark.parametrize(("low", "high"), [(-12.4, 120.0), (-80.0, 64.4)])
 def test_a_profile_that_ends_under_the_vehicle_is_refused(low, high):
-    """9.2 m of truck before the start, and behind the end of 52 m until its last axle has left."""
+    """12.5 m of truck before the start, and behind the end of 52 m until its last axle has left."""
     with pytest.raises(InputError, match="but the wheels need"):
         forces(way(waves(wave=2.0, height=0.002, low=low, high=high)), duration=20.0)
-    forces(way(waves(wave=2.0, height=0.002, low=-9.3, high=61.3)), duration=20.0)
+    forces(way(waves(wave=2.0, height=0.002, low=-12.6, high=64.6)), duration=20.0)
 
 
 def test_a_floor_is_not_prepared_for_a_profile_that_does_not_cover():
@@ -137,10 +140,8 @@ def test_an_accelerating_vehicle_starts_level():
     )
     time, dynamic = forces(crossing, duration=1.5)
     first = time < law.time_to(4.0) - 2 * DT
-    assert (
-        np.abs(dynamic[first]).max() < 30.0
-    )  # what filters at 5 ms ring before the ramp, of 22 kN
-    assert np.abs(dynamic).max() > 1e4
+    assert np.abs(dynamic[first]).max() < 30.0  # what filters at 5 ms ring before the ramp, of 5 kN
+    assert np.abs(dynamic).max() > 4e3
 
 
 @pytest.mark.parametrize("patch", [0.0625, 0.125, 0.25])
@@ -175,24 +176,26 @@ def test_a_jump_gives_its_damper_the_whole_impulse(at, chamfer):
     heavy = sprung_mass(**(HEAVY | {"stiffness": 1e-3}))
     road = Profile.piecewise_linear([-20.0, at, at + chamfer, 90.0], [0.0, 0.0, rise, rise])
     _, dynamic = forces(way(road, vehicle=heavy, speed=4.0), duration=2.0)
-    # the mass gains c dz / m, a rate of 4e-7 m/s, at which its damper gives back 0.008 N
+    # the mass gains c dz / m = 4e-10 m/s, of which its damper feels nothing
     assert dynamic.sum() * DT == pytest.approx(c * rise, rel=1e-4)
 
 
 def test_a_joint_gives_a_mass_its_velocity():
     """A lip of 1 mm, 1 mm long: m dv = c dz at once, then free decay, by a general ODE solver."""
-    m, k, c, speed, at = 5e3, 1e6, 1e5, 4.0, 3.004
+    m, k, c, speed, at = 5e3, 1e5, 2e4, 4.0, 3.004
     road = Profile.piecewise_linear([-20.0, at, at + 1e-3, 90.0], [0.0, 0.0, 1e-3, 1e-3])
     vehicle = sprung_mass(mass=m, stiffness=k, damping=c)
     time, dynamic = forces(way(road, vehicle=vehicle, speed=speed), duration=2.0)
-    velocity = np.cumsum(dynamic[:, 0]) * DT / m  # the force on the ground is that on the mass
+    velocity = (
+        (np.cumsum(dynamic[:, 0]) - dynamic[:, 0] / 2) * DT / m
+    )  # the force on the ground is that on the mass
     start = (at + 5e-4) / speed
     exact = integrate.solve_ivp(
         lambda _, y: [y[1], (k * (1e-3 - y[0]) - c * y[1]) / m], (start, 2.0), [0.0, c * 1e-3 / m],
         t_eval=time[time > start + 3 * DT], rtol=1e-10, atol=1e-14,
     ).y[1]  # fmt: skip
     late = time > start + 3 * DT
-    np.testing.assert_allclose(velocity[late], exact, atol=0.03 * c * 1e-3 / m)
+    np.testing.assert_allclose(velocity[late], exact, atol=0.02 * c * 1e-3 / m)
 
 
 def bump(at, *, length=0.05, height=0.02):
@@ -208,15 +211,15 @@ def bump(at, *, length=0.05, height=0.02):
 
 @pytest.mark.parametrize("at", [6.0, 6.02, 6.035])
 def test_a_bump_between_two_steps_is_refused(at):
-    """5 cm long and 20 mm high at 40 km/h, where a wheel moves 56 mm in 5 ms; 0.5 ms shows it.
+    """5 cm long and 20 mm high at 40 km/h, where a wheel moves 56 mm in 5 ms; 0.25 ms shows it.
 
-    The peak of the first axle against steps ten times shorter, within the 3 % of its force.
+    The bump lasts 4.5 ms; the sample nearest its peak is within sin^2(pi / 36) = 0.8 % of it.
     """
     fast = {"speed": 40 * KMH, "length": 12.0}
     with pytest.raises(InputError, match=r"near station 6.0.*unseen.*time step to 1.25 ms.*patch"):
         forces(way(bump(at), **fast))
-    coarse, fine = (forces(way(bump(at), **fast), dt=dt, duration=1.5)[1] for dt in (5e-4, 5e-5))
-    assert coarse.max() == pytest.approx(fine.max(), rel=0.03)
+    coarse, fine = (forces(way(bump(at), **fast), dt=dt, duration=1.5)[1] for dt in (2.5e-4, 5e-5))
+    assert coarse.max() == pytest.approx(fine.max(), rel=0.015)
 
 
 def test_a_tyre_makes_a_step_one_that_5_ms_can_show():
@@ -255,20 +258,23 @@ def test_what_a_step_hides_is_doubted():
 
 @pytest.mark.parametrize("beyond", ["level", "mirror"])
 def test_a_named_choice_extends_a_profile(beyond):
-    """Level at the height of the end, or its mirror image: as read by the profile itself."""
+    """Level at the height of the end, or its mirror image: as read by the profile itself.
+
+    A held wheel feels them but for the plane that it starts on, whose grade is that of its way.
+    """
+    speed, run_in = 4.0, 4.0
+    k, c = HEAVY["stiffness"], HEAVY["damping"]
     road = dataclasses.replace(rough(0.0, length=30.0), beyond=beyond)
-    crossing = way(road, vehicle=sprung_mass(**HEAVY), run_in=4.0, speed=4.0)
+    crossing = way(road, vehicle=sprung_mass(**HEAVY), run_in=run_in, speed=speed)
     time, dynamic = forces(crossing, duration=10.0)
-    z, slope = road.at(4.0 * time)
-    start = road.at(-4.0)
-    grade = 0.0 if beyond == "level" else None
-    late = 4.0 * time > 1.0
-    felt = HEAVY["stiffness"] * (z - start[0]) + 4.0 * HEAVY["damping"] * slope
-    if grade == 0.0:
-        inner = late & (np.abs(4.0 * time - road.station[-1]) > 0.05)
-        np.testing.assert_allclose(dynamic[inner, 0], felt[inner], atol=1.0)
-    else:
-        assert np.ptp(dynamic[4.0 * time > 31.0]) > 1e3
+    s = speed * time
+    (z, slope), (z0, _) = road.at(s), road.at(-run_in)
+    felt = k * (z - z0) + c * speed * slope
+    off = (s > 0.05) & (np.abs(s - road.station[-1]) > 0.05)  # kinks of the level road
+    tilt = k * (s + run_in) + c * speed
+    grade = np.linalg.lstsq(tilt[off, None], (felt - dynamic[:, 0])[off], rcond=None)[0][0]
+    assert (grade == pytest.approx(0.0, abs=1e-9)) == (beyond == "level")
+    np.testing.assert_allclose((dynamic[:, 0] + grade * tilt)[off], felt[off], atol=1.0)
 
 
 def test_the_road_beside_random_ones_is_the_same():

@@ -166,7 +166,8 @@ def _remedy(crossing: Crossing, covered: tuple[float, float], reach: tuple[float
         )
     shorter = way - crossing.vehicle.length
     if start + behind <= last + _ROUNDING and shorter >= 0.0:
-        return f"shorten the run-in to run_in={np.floor(10 * shorter) / 10:g} m"
+        # it is rounded up to whole time steps, for which a decimetre is kept
+        return f"shorten the run-in to run_in={max(0.0, np.floor(10 * shorter - 1) / 10):g} m"
     return f"give a profile of {before + behind:.4g} m or more, or a shorter run_in"
 
 

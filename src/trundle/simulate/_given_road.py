@@ -18,6 +18,7 @@ from trundle.vehicle import Vehicle
 __all__ = ["GivenRoad", "given_road", "given_road_doubts"]
 
 _ROUNDING = 1e-6  # m; a profile may end so little before the last wheel
+_DENSE = 3  # of five steps with a kink, from which on a road is a polygon of many short sides
 _HIDDEN = 0.003  # of a static wheel force, what a step hides without a word
 _PLANE = 1e-6  # of its stiffness, what a motion without spring forces may have
 
@@ -185,7 +186,28 @@ def _over_kinks(profile: Profile, station: Array, slope: Array) -> Array:
     inside = np.searchsorted(kinks, high, "right") > np.searchsorted(kinks, low, "left")
     width = high - low
     rise = profile.at(high)[0] - profile.at(low)[0]
-    return np.where(inside & (width > 0.0), rise / np.where(width > 0.0, width, 1.0), slope)
+    mean = np.where(inside & (width > 0.0), rise / np.where(width > 0.0, width, 1.0), slope)
+    return _sharpened(mean, inside)
+
+
+def _sharpened(mean: Array, inside: Array) -> Array:
+    """Give means over steps what they take of waves, where a road has a kink in most steps.
+
+    A mean over a step multiplies a wave of x waves a step by ``sin(pi x) / (pi x)``; of its
+    inverse, ``1 - d/24 + 3 d^2/640`` of second differences d is taken, which leaves 0.998 at
+    40 Hz and 0.92 at 80 Hz with steps of 5 ms. What one sample gains its neighbour loses.
+    Single kinks are left alone, for it would overshoot them.
+    """
+    near = sum(np.roll(inside, shift, axis=0).astype(int) for shift in range(-2, 3))
+    dense = near >= _DENSE
+    both = dense[1:] & dense[:-1]
+
+    def second(values: Array) -> Array:
+        flow = np.where(both, np.diff(values, axis=0), 0.0)
+        return np.diff(flow, axis=0, prepend=0.0, append=0.0)
+
+    once = second(mean)
+    return mean - once / 24.0 + 3.0 / 640.0 * second(once)
 
 
 def _kinks(profile: Profile) -> Array:

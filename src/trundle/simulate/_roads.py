@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -87,19 +87,22 @@ def drawn_roads(
     """
     with ThreadPoolExecutor(n_threads()) as pool:
         for crossing, columns in columns_of(crossings):
-            if isinstance(crossing.road, Profile):
-                given = given_road(crossing, timeline, columns)
-                every = (len(runs), *given.elevation.shape)
-                elevation, slope = (
-                    np.broadcast_to(one, every) for one in (given.elevation, given.slope)
-                )
-                yield columns, slice(0, len(runs)), elevation, slope
-                continue
-            source = _Source(crossing, columns, timeline, seed)
+            draw = _drawing(crossing, columns, timeline, seed)
             for start in range(0, len(runs), _TOGETHER):
                 some = runs[start : start + _TOGETHER]
-                drawn = np.array(list(pool.map(source.draw, some)))
+                drawn = np.array(list(pool.map(draw, some)))
                 yield columns, slice(start, start + len(some)), drawn[:, 0], drawn[:, 1]
+
+
+def _drawing(
+    crossing: Crossing, columns: slice, timeline: Timeline, seed: int
+) -> Callable[[int], Float[Array, "2 steps contacts"]]:
+    """Return what gives elevation and slope under one crossing's wheels by the run's number."""
+    if not isinstance(crossing.road, Profile):
+        return _Source(crossing, columns, timeline, seed).draw
+    given = given_road(crossing, timeline, columns)
+    road = np.array([given.elevation, given.slope])
+    return lambda _: road
 
 
 class _Source:

@@ -38,7 +38,7 @@ def profile_doubts(profile: Profile) -> tuple[FitnessWarning, ...]:
     --------
     >>> millimetres = Profile.from_samples([0.0, 0.1, 0.2, 0.3], [0.0, 1.2, 0.4, 0.9])
     >>> print(profile_doubts(millimetres)[0].message)
-    every twentieth point is steeper than 0.5 m/m (here 23): are elevations in mm or cm?
+    every twentieth point is steeper than 0.5 m/m (here 12.4): are elevations in mm or cm?
     """
     station = np.unique(profile.station)
     spacing = float(np.median(np.diff(station)))

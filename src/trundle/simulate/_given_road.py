@@ -198,8 +198,8 @@ def _sharpened(mean: Array, inside: Array) -> Array:
     40 Hz and 0.92 at 80 Hz with steps of 5 ms. What one sample gains its neighbour loses.
     Single kinks are left alone, for it would overshoot them.
     """
-    near = sum(np.roll(inside, shift, axis=0).astype(int) for shift in range(-2, 3))
-    dense = near >= _DENSE
+    near = np.sum([np.roll(inside, shift, axis=0) for shift in range(-2, 3)], axis=0)
+    dense: Array = np.asarray(near) >= _DENSE
     both = dense[1:] & dense[:-1]
 
     def second(values: Array) -> Array:

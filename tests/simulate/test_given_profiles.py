@@ -260,6 +260,28 @@ def test_a_road_that_may_be_drawn_may_be_given(name):
     forces(way(road, speed=speed), duration=3.0)
 
 
+def test_texture_finer_than_a_step_is_refused():
+    """0.1 mm every millimetre is low but steep: samples of its slope are waves that are not there.
+
+    A contact patch averages it away: forces are those of the road without texture, within 1 %.
+    """
+    s = np.arange(-20.0, 80.0, 0.001)
+    rng = np.random.default_rng(6)
+    smooth = np.interp(s, *_points(rough(-30.0, length=130.0)))
+    texture = Profile.from_samples(s, smooth + 1e-4 * rng.standard_normal(len(s)))
+    with pytest.raises(InputError, match=r"unseen between two steps.*contact_patch"):
+        forces(way(texture))
+    patch = RoughnessBand(contact_patch=0.15)
+    with_texture, without = (
+        forces(way(road, band=patch))[1] for road in (texture, Profile.from_samples(s, smooth))
+    )
+    assert (with_texture - without).std() < 0.01 * without.std()
+
+
+def _points(profile):
+    return profile.station, profile.elevation
+
+
 def test_what_a_step_hides_is_doubted():
     """A bump of 1 mm, some 1 % of a wheel's force: said in the result, at 0.5 ms no longer."""
     low = bump(6.0, height=0.001)

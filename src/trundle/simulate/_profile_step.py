@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
+from scipy import ndimage, signal
 
 from trundle._typing import Array
 from trundle.errors import InputError
@@ -19,6 +19,7 @@ _SPARSE = 4.0  # steps between two points of a profile, above which nothing is h
 _FINE = 8  # samples a step on which the road is looked at
 _STOP = 0.6  # waves a step at which the filter stops; half a wave is the most that a step shows
 _TAPS = 18 * _FINE + 1  # 60 dB from half a wave to 0.7 waves a step
+_MEAN = 100  # steps over which the mean of the hidden steepness is taken
 _CHUNK = 200_000  # samples looked at together
 _AROUND = 40.0  # steps on either side of the worst place, tried with shorter steps
 _HALVINGS = 8
@@ -74,7 +75,9 @@ def hidden_by_step(
     The road is split at half a wave a step, the shortest that samples can hold (as with random
     roads). What is left above it, times a contact's stiffness, is a force that no step sees. Of
     a damper, a tenth of what it would add within a step counts: its impulse is kept by
-    `given_road`, which takes the mean slope over kinks.
+    `given_road`, which takes the mean slope over kinks. Texture finer than a step is steep,
+    though low: samples of its slope would take it for waves that the step can hold; so what the
+    damper makes of the hidden slope, in the mean of its size over 100 steps, is added.
     """
     stride = speed * dt
     spacing = np.diff(profile.station)
@@ -84,8 +87,7 @@ def hidden_by_step(
     counted = spacing[spacing > 0.0] if profile.beyond == "mirror" else spacing[driven]
     if stride == 0.0 or counted.min(initial=np.inf) > _SPARSE * stride:
         return Hidden(height=0.0, station=low, force=0.0)
-    height, at = _hidden(profile, low, high, stride)
-    return Hidden(height=height, station=at, force=_force(crossing, height, dt))
+    return _hidden(crossing, profile, (low, high), speed=speed, dt=dt)
 
 
 def check_profile_step(
@@ -123,40 +125,46 @@ def check_profile_step(
 def _shows(
     crossing: Crossing, profile: Profile, area: tuple[float, float], *, speed: float, dt: float
 ) -> bool:
-    return _force(crossing, _hidden(profile, *area, speed * dt)[0], dt) <= _MOST
+    return _hidden(crossing, profile, area, speed=speed, dt=dt).force <= _MOST
 
 
-def _force(crossing: Crossing, hidden: float, dt: float) -> float:
-    """Return the largest force of a hidden height, over the static force."""
+def _hidden(
+    crossing: Crossing, profile: Profile, area: tuple[float, float], *, speed: float, dt: float
+) -> Hidden:
+    low, high = area
+    step = speed * dt / _FINE
+    count = int(np.ceil((high - low) / step)) + 1
+    pieces = [
+        _hidden_in(profile, low + step * np.arange(start, min(start + _CHUNK, count) + 1), step)
+        for start in range(0, count, _CHUNK)
+    ]
+    height, station, _ = max(pieces)
+    steepness = max(steep for _, _, steep in pieces)
     vehicle = crossing.vehicle
-    stiff = np.maximum(vehicle.contact_stiffness, 0.1 * vehicle.contact_damping / dt)
+    stiffness = np.maximum(vehicle.contact_stiffness, 0.1 * vehicle.contact_damping / dt)
+    force = stiffness * height + vehicle.contact_damping * speed * steepness
     static = np.abs(vehicle.static_forces)
     carried = np.where(static > 0.0, static, max(float(static.mean()), 1e-300))
-    return float((stiff / carried).max() * hidden)
+    return Hidden(height=height, station=station, force=float((force / carried).max()))
 
 
-def _hidden(profile: Profile, low: float, high: float, stride: float) -> tuple[float, float]:
-    """Return the largest height above half a wave a step [m], and its station [m]."""
-    step = stride / _FINE
-    count = int(np.ceil((high - low) / step)) + 1
-    most, where = 0.0, low
-    for start in range(0, count, _CHUNK):
-        inside = low + step * np.arange(start, min(start + _CHUNK, count) + 1)
-        height, at = _hidden_in(profile, inside, step)
-        if height > most:
-            most, where = height, at
-    return most, where
-
-
-def _hidden_in(profile: Profile, inside: Array, step: float) -> tuple[float, float]:
+def _hidden_in(profile: Profile, inside: Array, step: float) -> tuple[float, float, float]:
+    """Return the largest height [m], its station [m], and the mean steepness."""
     margin = step * np.arange(1, _TAPS // 2 + 1)
     wide = np.concatenate([inside[0] - margin[::-1], inside, inside[-1] + margin])
-    z = profile.at(wide)[0]
-    taps = signal.firwin(_TAPS, 2.0 * _STOP / _FINE, window=("kaiser", 5.65))
-    shown = z[0] + signal.oaconvolve(z - z[0], taps, "valid")
+    z, slope = profile.at(wide)
+    shown, shown_slope = z[0] + _below(z - z[0]), _below(slope)
     # a spike between two samples stands at a point of its own
     own = profile.station[(profile.station >= inside[0]) & (profile.station <= inside[-1])]
     s = np.concatenate([inside, own])
     above = np.abs(profile.at(s)[0] - np.concatenate([shown, np.interp(own, inside, shown)]))
     worst = int(np.argmax(above))
-    return float(above[worst]), float(s[worst])
+    steep = np.abs(profile.at(inside)[1] - shown_slope)
+    steepness = ndimage.uniform_filter1d(steep, _MEAN * _FINE, mode="constant").max()
+    return float(above[worst]), float(s[worst]), float(steepness)
+
+
+def _below(values: Array) -> Array:
+    """Return what lies below half a wave a step, without the margins."""
+    taps = signal.firwin(_TAPS, 2.0 * _STOP / _FINE, window=("kaiser", 5.65))
+    return signal.oaconvolve(values, taps, "valid")

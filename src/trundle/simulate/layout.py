@@ -26,6 +26,7 @@ from trundle.errors import FitnessWarning, InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor, RigidGround
+from trundle.simulate._given_road import given_road_doubts
 from trundle.simulate._march import (
     ContactLaw,
     Progress,
@@ -249,6 +250,7 @@ def lay_out(
     if not points:
         raise InputError("name at least one point where the response is to be read")
     _check_vehicles(many, method.integration)
+    doubts = given_road_doubts(many, method.integration.dt, duration)
     if isinstance(floor, Floor):
         floor = prepare(floor, method.integration, method.damping)
     _check_prepared(floor, method)
@@ -265,7 +267,7 @@ def lay_out(
     layout = Layout(
         crossings=many,
         method=method,
-        doubts=fitness_warnings(many, method, floor.floor, floor.modes),
+        doubts=(*fitness_warnings(many, method, floor.floor, floor.modes), *doubts),
         point_names=tuple(points),
         timeline=timeline,
         floor=under_wheels,

@@ -381,7 +381,7 @@ def test_doubts_are_recorded():
     ):
         assert word in subjects
     stretched = next(w for w in runs.warnings if w.subject == "time step")
-    assert "20 Hz" in stretched.message
+    assert "18 Hz" in stretched.message
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from trundle.criteria import assess_reduced, spectra_asked_for
-from trundle.dynamics import Modes
+from trundle.dynamics import Modes, repeatable
 from trundle.errors import InputError
 from trundle.response import (
     behind_isolators,
@@ -81,7 +80,7 @@ def try_changes(
     found: dict[tuple[str, float, str], list[Outcome]] = {}
     resonances: dict[tuple[str, str], tuple[float, ...]] = {}
     slab: _Slab | None = None
-    with threadpool_limits(limits=1, user_api="blas"):
+    with repeatable():
         for together in alike:
             first = together[0]
             tell(f"{first.label}: modes of the floor", done / total)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trundle.criteria import Verdict, assess_reduced
-from trundle.dynamics import Modal, Modes
+from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import FitnessWarning
 from trundle.response import few_runs_warnings, level_warnings
 from trundle.simulate import Coupled, Crossing, PreparedFloor, StaticFlexibility, prepare
@@ -132,13 +132,14 @@ def run_study(
             done=keep,
         )
     else:
-        for job, parts in missing.items():
-            if parts:
-                bar.begin(job)
-                carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
-                cluster.submit(job, parts, carrier)
-                cluster.collect(keep, wait=False)
-        cluster.collect(keep, wait=True)
+        with repeatable():
+            for job, parts in missing.items():
+                if parts:
+                    bar.begin(job)
+                    carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
+                    cluster.submit(job, parts, carrier)
+                    cluster.collect(keep, wait=False)
+            cluster.collect(keep, wait=True)
     tell("done", 1.0)
     return _result(study, jobs, store, modes)
 
@@ -235,9 +236,10 @@ def _all_modes(study: Study, tell: Report) -> Modes | None:
         return None
     label = f"modes of the floor below {f_max:g} Hz"
     tell(label, 0.0)
-    return modes_of(
-        study.floor, f_max=f_max, progress=lambda share: tell(label, _MODES_SHARE * share)
-    )
+    with repeatable():
+        return modes_of(
+            study.floor, f_max=f_max, progress=lambda share: tell(label, _MODES_SHARE * share)
+        )
 
 
 def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:

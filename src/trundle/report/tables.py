@@ -240,7 +240,12 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
     printed accelerations are sums, the printed velocities nearer to the other.
     """
     study = result.study
-    singles = [case.name for case in study.cases if len(case.routes) == 1]
+    printed_cases = {row.case for row in study.printed}
+    singles = [
+        case.name
+        for case in study.cases
+        if len(case.routes) == 1 and (case.name in printed_cases or not printed_cases)
+    ]
     many = [case.name for case in study.cases if len(case.routes) > 1]
     rows = []
     for printed in study.printed_bounds:

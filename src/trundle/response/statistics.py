@@ -136,7 +136,7 @@ def exact_statistics(answers: Iterable[Harmonics], *, f_max: float = np.inf) -> 
     answers : iterable of Harmonics
         Answers to the waves, some at a time.
     f_max : float
-        Highest frequency that the computation contains [Hz].
+        Highest frequency up to which bands are wanted [Hz]; at most what the answers show.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def exact_statistics(answers: Iterable[Harmonics], *, f_max: float = np.inf) -> 
     mean = first.mean
     fs = 1.0 / float(mean.time[1] - mean.time[0])
     mid_band = mid_band_frequencies()
-    resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= f_max)
+    resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= min(f_max, first.f_max))
     filters = [band_filter(f, fs) for f in mid_band[resolved]]
     sums = _Sums()
     _add(sums, first, filters)

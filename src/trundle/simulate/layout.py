@@ -42,11 +42,11 @@ from trundle.simulate._point_motion import PointFilters, complete, point_filters
 from trundle.simulate._residual import point_residual
 from trundle.simulate._roads import RoadUnderWheels
 from trundle.simulate._schedule import Timeline, operator_rows, timeline_of
-from trundle.simulate._stability import check_contact_loop, step_problem
 from trundle.simulate.coverage import Coverage, coverage_of
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.fitness import fitness_warnings, resolved_to
 from trundle.simulate.prepared import PreparedFloor, prepare
+from trundle.simulate.step_limits import check_contact_loop, step_problem
 from trundle.structure import Floor
 
 __all__ = ["Layout", "lay_out", "lay_out_on_rigid_ground"]

@@ -9,6 +9,7 @@ from trundle.dynamics import Modal
 from trundle.errors import InputError, Problem
 from trundle.road import RoughnessBand
 from trundle.simulate.ensemble import LEAST_BATCH
+from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import FloorPlan
 from trundle.study.model import Drive, MethodPlan, road_label
 from trundle.study.read import StudyFile
@@ -40,6 +41,7 @@ def relation_problems(
         found += _roughness(drives, methods, band, follows_dt=follows_dt)
     found += _sizes(file, drives, methods)
     found += _entries(drives, methods)
+    found += _vehicle_steps(drives, methods)
     return found
 
 
@@ -250,6 +252,24 @@ def _sizes(
                 f"{LEAST_BATCH} runs at a time",
                 remedy="use fewer points, a shorter record, or a longer dt",
             )
+
+
+def _vehicle_steps(
+    drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]
+) -> Iterator[Problem]:
+    """Give the vehicles whose own vibration is too fast for a method's steps."""
+    vehicles = {drive.vehicle.name: drive.vehicle for drive in drives.values()}
+    for method in methods.values():
+        integration = method.interaction.integration
+        for vehicle in vehicles.values() if isinstance(integration, Modal) else ():
+            if problem := step_problem(vehicle, integration.dt):
+                yield Problem(
+                    place=f"method {method.name!r}.dt",
+                    value=f"{1e3 * integration.dt:g} ms",
+                    rule=problem.partition(": shorten")[0],
+                    remedy=f"shorten dt to {1e3 * longest_step(vehicle):.2g} ms, or see whether a "
+                    "stiffness or a mass has the wrong unit",
+                )
 
 
 def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:

@@ -9,6 +9,8 @@ from trundle.study.model import Case, Study
 
 __all__ = ["assumption_warnings", "early_end_warnings"]
 
+_ON_BEAM = 0.5  # m from its line
+
 
 def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
     """Return what a study takes for granted, with its size.
@@ -39,7 +41,23 @@ def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
                 "on the same road: levels were 0.9 to 1.4 times those of one vehicle",
             )
         )
+    found += _points_on_beams(study)
     return tuple(found)
+
+
+def _points_on_beams(study: Study) -> list[FitnessWarning]:
+    """Return the doubt about points on main beams, the stillest places of a floor."""
+    plan, found = study.plan, list[FitnessWarning]()
+    for name, (x, y) in study.points.items():
+        along_x = plan.beams_x is not None and np.abs(plan.y_lines - y).min() < _ON_BEAM
+        along_y = plan.beams_y is not None and np.abs(plan.x_lines - x).min() < _ON_BEAM
+        if along_x or along_y:
+            message = (
+                f"point {name!r} at ({x:g}, {y:g}) m stands on a main beam, where a floor is "
+                "stillest; a level ten metres away may be ten times higher: add a point in mid-bay"
+            )
+            found.append(FitnessWarning(subject=f"point {name}", message=message))
+    return found
 
 
 def early_end_warnings(study: Study, case: Case) -> tuple[FitnessWarning, ...]:

@@ -1,5 +1,7 @@
 """Model floors with flat shells, eccentric beams, springs and supports."""
 
+from trundle.structure.arching import arching
+from trundle.structure.edges import EDGES, Edge
 from trundle.structure.floor import (
     DOF_NAMES,
     BeamGroup,
@@ -9,7 +11,7 @@ from trundle.structure.floor import (
     ShellGroup,
     SpringGroup,
 )
-from trundle.structure.plan import EDGES, FloorPlan, Rectangle, build_floor, mesh_lines
+from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.reference import reference_plan, reference_unit
 from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
 from trundle.structure.statics import self_weight_deflection
@@ -20,6 +22,7 @@ __all__ = [
     "EDGES",
     "BeamGroup",
     "BeamSection",
+    "Edge",
     "Floor",
     "FloorPlan",
     "Material",
@@ -29,6 +32,7 @@ __all__ = [
     "ShellGroup",
     "ShellSection",
     "SpringGroup",
+    "arching",
     "build_floor",
     "mesh_lines",
     "reference_plan",

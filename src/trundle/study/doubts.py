@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from trundle.errors import FitnessWarning
 from trundle.structure import FloorPlan, arching
+from trundle.study.doubts_values import value_doubts
 from trundle.study.model import Study
 
 __all__ = ["study_doubts"]
@@ -24,7 +25,7 @@ def study_doubts(study: Study) -> tuple[FitnessWarning, ...]:
     tuple of FitnessWarning
         Each with its numbers and its remedy; empty for a study that nothing is odd about.
     """
-    return tuple(_thrust(study.plan))
+    return (*_thrust(study.plan), *value_doubts(study))
 
 
 def _thrust(plan: FloorPlan) -> Iterator[FitnessWarning]:

@@ -145,3 +145,41 @@ def test_check_prints_doubts_and_still_finds_no_mistake(tmp_path, trundle, capsy
         line.startswith("warning: floor.material.elastic_modulus: 33 MPa") for line in doubts
     )
     assert all(line.startswith("warning: ") for line in doubts)
+
+
+WITH_COLUMNS = """column = { width = "0.4 m", depth = "0.4 m" }
+storey_below = "4 m"
+edges = { x_min = "free", x_max = "free" }"""
+BEARINGS = 'edges = { x_min = "simple", x_max = "simple" }'
+BEAMS = 'beams_x = { width = "0.4 m", depth = "0.8 m" }\n'
+
+
+def test_columns_that_meet_no_beam_are_doubted(doubts):
+    """One beam at each column is enough; secondary beams stand between the columns."""
+    columns = (BEARINGS, WITH_COLUMNS)
+    assert "columns" not in doubts(columns)
+    assert "one node" in doubts(columns, (BEAMS, ""))["columns"]
+    secondary = (BEAMS, 'secondary_y = { width = "0.2 m", depth = "0.4 m" }\n')
+    assert "between the columns" in doubts(columns, secondary)["columns"]
+    along_y = (BEAMS, BEAMS.replace("beams_x", "beams_y"))
+    assert "columns" not in doubts(columns, along_y)
+    assert "columns" not in doubts((BEAMS, ""))
+
+
+FULL = '[[method]]\nname = "coupled"\nn_max = "25 1/m"'
+
+
+def test_a_mesh_too_coarse_for_the_highest_band_is_doubted(doubts):
+    """By hand: 2 pi sqrt(D / m) / (7 h)^2 with D = 22 MN m and m = 490 kg/m2 is 27.2 Hz at 1 m.
+
+    Waves to 25 cycle/m at 15 km/h excite the bands to 80 Hz, waves to 2.83 those to 10 Hz.
+    """
+    waves = ('[[method]]\nname = "coupled"', FULL)
+    coarse = ('mesh_size = "0.5 m"', 'mesh_size = "0.75 m"')
+    speed = 2 * 3.141592653589793 * (33e9 * 0.2**3 / 12 / 490) ** 0.5
+    told = doubts(waves, coarse)["mesh"]
+    assert f"{speed / (7 * 0.75) ** 2:.3g} Hz" in told
+    assert "bands above 40 Hz" in told
+    assert f"mesh_size of {int(100 * (speed / 10**1.9) ** 0.5 / 7) / 100:g} m" in told
+    assert "mesh" not in doubts(waves)
+    assert "mesh" not in doubts(coarse)

@@ -13,6 +13,11 @@ from trundle.structure.floor import (
 )
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.reference import reference_plan, reference_unit
+from trundle.structure.resolution import (
+    ELEMENTS_PER_WAVE,
+    resolved_frequency,
+    resolving_mesh_size,
+)
 from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
 from trundle.structure.statics import self_weight_deflection
 
@@ -20,6 +25,7 @@ __all__ = [
     "CONCRETE",
     "DOF_NAMES",
     "EDGES",
+    "ELEMENTS_PER_WAVE",
     "BeamGroup",
     "BeamSection",
     "Edge",
@@ -37,5 +43,7 @@ __all__ = [
     "mesh_lines",
     "reference_plan",
     "reference_unit",
+    "resolved_frequency",
+    "resolving_mesh_size",
     "self_weight_deflection",
 ]

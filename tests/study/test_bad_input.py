@@ -127,6 +127,7 @@ MISTAKES = [
     ("vehicle without a name", "[vehicle.truck]", "[vehicle]", ["vehicle.kind"]),
     ("name with a slash", 'name = "tool"', 'name = "../tool"', ["point[1].name", "without '/'"]),
     ("nothing fixed", 'column = { width = "0.4 m", depth = "0.4 m" }\nstorey_below = "4 m"', "", ["floor", "nothing holds"]),
+    ("one hinge", 'column = { width = "0.4 m", depth = "0.4 m" }\nstorey_below = "4 m"', 'edges = { x_min = "simple", y_min = "symmetry" }', ["floor.edges", "tip over"]),
     ("columns without a storey", 'storey_below = "4 m"', "", ["floor.column", "columns need storey_below"]),
     ("yes for true", "[criteria]", '[roughness]\nn_max_follows_dt = "yes"\n[criteria]', ["roughness.n_max_follows_dt", "boolean"]),
     ("text for a count", "runs = 2", 'runs = "2"', ["runs", "integer"]),

@@ -12,6 +12,7 @@ from trundle.dynamics import natural_modes
 from trundle.errors import InputError
 from trundle.study.assumptions import early_end_warnings
 from trundle.study.build import load_study
+from trundle.study.doubts import study_doubts
 from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
 from trundle.vehicle import GRAVITY, VEHICLES
 
@@ -24,7 +25,10 @@ def check(path: Path) -> None:
     """Check a study and print what it would do."""
     study = load_study(path)
     cells = len(study.cases) * len(study.roads) * len(study.methods)
-    print(f"{path}: no mistakes\n\n{study.title}")
+    print(f"{path}: no mistakes")
+    for warning in study_doubts(study):
+        print(f"warning: {warning}")
+    print(f"\n{study.title}")
     print(
         f"floor: {study.floor.name}, {len(study.floor.nodes)} nodes, "
         f"{study.floor.n_dofs} degrees of freedom, "

@@ -175,13 +175,23 @@ def _supports(plan: FloorPlan) -> Iterator[Problem]:
             rule="columns need storey_below or storey_above, and storeys need a column",
             remedy="give both, or neither",
         )
-    elif plan.column is None and not {"pinned", "clamped"} & set(plan.edges.values()):
+    elif plan.column is None and not _stands(plan.edges):
         yield Problem(
-            place="floor",
-            value="no columns, and no pinned or clamped edge",
-            rule="nothing holds this floor: it could move without strain",
-            remedy="add column and storey_below, or a pinned edge",
+            place="floor.edges",
+            value=", ".join(f"{e} {kind}" for e, kind in plan.edges.items() if kind != "free")
+            or "no columns, and no simple, pinned or clamped edge",
+            rule="nothing holds this floor: it would sink, or tip over about a lone edge",
+            remedy="add column and storey_below, or hold another edge: simple, pinned or clamped",
         )
+
+
+def _stands(edges: Mapping[str, str]) -> bool:
+    """Return whether edges alone hold a floor up, and against tipping."""
+    bearing = [edge for edge, kind in edges.items() if kind in ("simple", "pinned")]
+    level = {edge[0] for edge, kind in edges.items() if kind == "symmetry"}
+    if "clamped" in edges.values() or len(bearing) > 1:
+        return True
+    return bool(bearing) and bearing[0][0] in level
 
 
 def _roughness(

@@ -15,6 +15,7 @@ from trundle.simulate import Coupled, Crossing, PreparedFloor, StaticFlexibility
 from trundle.structure import Floor
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
 from trundle.study.cells import Cell, CellKey
+from trundle.study.doubts import study_doubts
 from trundle.study.in_threads import compute_here
 from trundle.study.jobs import Job, lay_out_job, plan_jobs
 from trundle.study.maps import MapKey, StudyMap, map_of
@@ -67,6 +68,7 @@ class StudyResult:
                 *few_runs_warnings(self.study.runs, assessment.percentile),
                 *_map_warnings(self.study, assessment.percentile),
                 *assumption_warnings(self.study),
+                *study_doubts(self.study),
                 *(w for case in self.study.cases for w in early_end_warnings(self.study, case)),
             )
             by_method[assessment.method].update(dict.fromkeys(doubts))

@@ -59,7 +59,7 @@ __all__ = [
     "VehicleSection",
 ]
 
-EdgeKind: TypeAlias = Literal["free", "symmetry", "pinned", "clamped"]
+EdgeKind: TypeAlias = Literal["free", "symmetry", "simple", "pinned", "clamped"]
 _MANY = 1_000_000
 
 

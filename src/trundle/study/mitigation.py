@@ -256,7 +256,7 @@ def _outcomes(
     )
     doubts = (
         *(w for w in runs.warnings if w.subject != LOST_CONTACT),
-        *level_warnings(assessment.averaging, float(runs.time[-1])),
+        *level_warnings(assessment.averaging, float(runs.time[-1]), levels=reduced[0].spectra),
         *few_runs_warnings(len(runs.acceleration), assessment.percentile),
     )
     return [

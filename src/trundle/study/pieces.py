@@ -11,7 +11,7 @@ from trundle.errors import FitnessWarning
 from trundle.response import (
     BandSpectra,
     ExactStatistics,
-    Process,
+    LargestValues,
     Reduced,
     SpectrumQuantity,
     join,
@@ -36,7 +36,7 @@ _LEVELS = ("values", "times")
 _COARSE = 0.05  # change of an RMS by half the waves above which exact statistics are doubted
 _HISTORY = ("displacement", "velocity", "acceleration", "contact_forces")
 _TRUNCATION = ("velocity", "acceleration")
-_PROCESS = ("variance", "rate_variance", "covariance", "turning")
+_LARGEST = ("mean", "random")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -93,8 +93,8 @@ def exact_piece(exact: ExactStatistics, factors: Sequence[float]) -> Piece:
     arrays["resolved"] = exact.resolved
     arrays |= {f"mean.{name}": value for name, value in exact.mean.items()}
     arrays |= {f"variance.{name}": value for name, value in exact.variance.items()}
-    for quantity, process in exact.processes.items():
-        arrays |= {f"process.{quantity}.{name}": getattr(process, name) for name in _PROCESS}
+    for quantity, values in exact.largest.items():
+        arrays |= {f"largest.{quantity}.{name}": getattr(values, name) for name in _LARGEST}
     arrays |= {"band_mean": exact.band_mean, "band_variance": exact.band_variance}
     for i, factor in enumerate(factors):
         arrays[f"{i}.peaks"] = exact.rougher(factor).peaks(EXACT_SHARES)
@@ -204,11 +204,9 @@ def _exact(piece: Piece) -> ExactStatistics:
         time=arrays["time"],
         mean=mean,
         variance=named("variance"),
-        processes={
-            quantity: Process(
-                time=arrays["time"],
-                mean=mean[quantity],
-                **{name: arrays[f"process.{quantity}.{name}"] for name in _PROCESS},
+        largest={
+            quantity: LargestValues(
+                **{name: arrays[f"largest.{quantity}.{name}"] for name in _LARGEST}
             )
             for quantity in ("velocity", "acceleration")
         },

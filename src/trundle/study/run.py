@@ -10,7 +10,7 @@ import numpy as np
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import FitnessWarning
-from trundle.response import few_runs_warnings, level_warnings
+from trundle.response import BandSpectra, few_runs_warnings, level_warnings
 from trundle.simulate import Coupled, Crossing, PreparedFloor, StaticFlexibility, prepare
 from trundle.structure import Floor
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
@@ -64,7 +64,11 @@ class StudyResult:
         assessment = self.study.assessment
         if assessment is not None and assessment.method in by_method:
             doubts = (
-                *level_warnings(assessment.averaging, self.study.longest_record),
+                *level_warnings(
+                    assessment.averaging,
+                    self.study.longest_record,
+                    levels=self._governing_levels(),
+                ),
                 *few_runs_warnings(self.study.runs, assessment.percentile),
                 *_map_warnings(self.study, assessment.percentile),
                 *assumption_warnings(self.study),
@@ -73,6 +77,16 @@ class StudyResult:
             )
             by_method[assessment.method].update(dict.fromkeys(doubts))
         return {method: tuple(found) for method, found in by_method.items()}
+
+    def _governing_levels(self) -> BandSpectra | None:
+        """Return the levels of the assessed cell with the smallest margin."""
+        margins = {
+            key: min((v.margin for v in verdicts if np.isfinite(v.margin)), default=np.inf)
+            for key, verdicts in self.verdicts.items()
+        }
+        if not margins:
+            return None
+        return self.cells[min(margins, key=lambda key: margins[key])].reduced.spectra
 
 
 def _map_warnings(study: Study, percentile: float) -> tuple[FitnessWarning, ...]:

@@ -122,7 +122,8 @@ class Verdict:
         at = "" if np.isnan(self.governing_band) else f" at {_hertz(self.governing_band)} Hz"
         low, high = self.interval
         between = f" ({low:.3g} to {high:.3g})" if np.isfinite(low) and 0.0 < low < high else ""
-        sure = ", not surely" if self.uncertain else ""
+        few = ", too few runs to be sure" if low == 0.0 else ", not surely"
+        sure = few if self.uncertain else ""
         return f"{self.status}{sure}, margin {self.margin:.3g}{between}{at}"
 
     def __str__(self) -> str:

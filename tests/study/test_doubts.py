@@ -6,6 +6,7 @@ import pytest
 
 from trundle.study import load_study
 from trundle.study.doubts import study_doubts
+from trundle.study.meshes import compare_meshes
 
 ON_WALLS = """
 title = "Composite floor on two walls"
@@ -183,3 +184,22 @@ def test_a_mesh_too_coarse_for_the_highest_band_is_doubted(doubts):
     assert f"mesh_size of {int(100 * (speed / 10**1.9) ** 0.5 / 7) / 100:g} m" in told
     assert "mesh" not in doubts(waves)
     assert "mesh" not in doubts(coarse)
+
+
+@pytest.mark.slow
+def test_half_the_mesh_changes_what_the_doubt_says_it_changes(tmp_path):
+    """Another mesh: bands of the floor that 0.75 m carries agree, one above is off by far.
+
+    Below 48 Hz a wave's frequency is at most 11 % high, half a band: levels from 6.3 Hz, where the
+    floor answers, move by less than a quarter. Above it modes fall into other bands.
+    """
+    path = tmp_path / "study.toml"
+    text = ON_WALLS.replace('[[method]]\nname = "coupled"', FULL).replace('"0.5 m"', '"0.75 m"')
+    path.write_text(text.replace('"20 s"', '"8 s"'), encoding="utf-8")
+    study = load_study(path)
+    assert "mesh" in {doubt.subject for doubt in study_doubts(study)}
+    found = compare_meshes(study)
+    assert found.sizes == (0.75, 0.375)
+    off = abs(found.ratios[0] - 1.0)
+    assert off[(found.bands > 6.0) & (found.bands < 41.0)].max() < 0.25
+    assert off[found.bands > 48.0].max() > 0.25

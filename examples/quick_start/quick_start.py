@@ -8,7 +8,9 @@ def main() -> list[str]:
     floor = tr.structure.reference_unit(mesh_size=2.0)
     truck = tr.vehicle.container_truck_40ft()
     rear = tr.route.Route.straight((0, 76.5), (52, 76.5), speed=15 / 3.6, name="rear")
-    crossing = tr.simulate.Crossing(truck, rear, tr.road.RoadClass("B"))
+    # waves to 22 cycle/m excite all bands to 80 Hz at this speed
+    waves = tr.road.RoughnessBand(n_max=22.0, contact_patch=0.2)
+    crossing = tr.simulate.Crossing(truck, rear, tr.road.RoadClass("B"), band=waves)
     runs = tr.simulate.ensemble(
         floor,
         crossing,

@@ -1,5 +1,8 @@
 """Modes and sparse factors against dense linear algebra."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from scipy import linalg, sparse
@@ -13,6 +16,7 @@ from trundle.dynamics import (
     natural_modes,
 )
 from trundle.errors import InputError, UnrestrainedModeError
+from trundle.structure import reference_unit
 
 
 @pytest.fixture(scope="module")
@@ -140,3 +144,66 @@ def test_a_missing_mode_is_noticed(monkeypatch):
     )
     with pytest.raises(ConvergenceError):
         natural_modes(floor.mass, floor.stiffness, f_max=20.0)
+
+
+@pytest.mark.parametrize("backend", available_backends())
+@pytest.mark.parametrize(("copies", "f_max"), [(45, 6.0), (100, 2.0), (100, 9.0)])
+def test_many_equal_modes_are_all_found(backend, copies, f_max):
+    """Copies of a chain of 90 masses, ``omega_j = 2 sqrt(k / m) sin(j pi / 2 / 91)`` as often as
+    there are copies, more than a block of the iteration shows, at the limit and between slices."""
+    n, k, m = 90, 1e6, 10.0
+    chain = sparse.diags_array(
+        [2 * k * np.ones(n), -k * np.ones(n - 1), -k * np.ones(n - 1)], offsets=[0, 1, -1]
+    )
+    each = sparse.eye_array(copies)
+    stiffness = sparse.csc_array(sparse.kron(each, chain))
+    mass = sparse.csc_array(sparse.kron(each, m * sparse.eye_array(n)))
+    exact = np.sqrt(k / m) / np.pi * np.sin(np.arange(1, n + 1) * np.pi / 2 / (n + 1))
+    found = natural_modes(mass, stiffness, f_max=f_max, backend=backend)
+    np.testing.assert_allclose(
+        found.frequencies, np.repeat(exact[exact < f_max], copies), rtol=1e-9
+    )
+    gram = found.shapes.T @ (mass @ found.shapes)
+    assert np.abs(gram - np.eye(found.n_modes)).max() < 1e-9
+    assert found.residuals.max() < 1e-7
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("backend", available_backends())
+@pytest.mark.parametrize(("mesh_size", "f_max"), [(2.0, 39.2), (2.0, 124.0), (3.0, 44.0)])
+def test_a_floor_of_equal_columns_keeps_all_its_modes(backend, mesh_size, f_max):
+    """The reference unit, whose equal columns have some 45 modes near 39 Hz: by inertia's count."""
+    floor = reference_unit(mesh_size=mesh_size)
+    found = natural_modes(floor.mass, floor.stiffness, f_max=f_max, backend=backend)
+    assert found.n_modes == count_modes_below(floor.mass, floor.stiffness, f_max)
+    assert found.residuals.max() < 1e-8
+
+
+@pytest.mark.skipif("pardiso" not in available_backends(), reason="needs pypardiso")
+def test_a_factor_gives_its_memory_back():
+    """30 factors of 30,000 dofs, each of some 20 MB that used to stay: less than one stays."""
+    script = """
+import resource
+import subprocess
+import sys
+
+import numpy as np
+from scipy import sparse
+from trundle.dynamics import factorise
+n = 173
+line = sparse.diags_array([2.1 * np.ones(n), -np.ones(n - 1), -np.ones(n - 1)], offsets=[0, 1, -1])
+eye = sparse.eye_array(n)
+matrix = sparse.csc_array(sparse.kron(line, eye) + sparse.kron(eye, line))
+def resident():
+    with open("/proc/self/statm") as file:
+        return int(file.read().split()[1]) * resource.getpagesize() / 1e6
+for i in range(35):
+    factorise(matrix, backend="pardiso").solve(np.ones(n * n))
+    if i == 4:
+        first = resident()
+print(resident() - first)
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True
+    )
+    assert float(done.stdout) < 20.0

@@ -21,4 +21,4 @@ def test_the_readmes_example(capsys):
     for line in (printed.splitlines()[0], printed.splitlines()[2], *verdicts[:3]):
         assert line in readme
     # class B at 15 km/h: the rear road must fail VC-A by far, as the paper's 109 um/s does
-    assert verdicts[4].startswith("tool, VC-A: fail")
+    assert verdicts[4].startswith("tool vertical, VC-A: fail")

@@ -142,7 +142,7 @@ def test_piecewise_linear_profile_and_its_kinks():
     """The ramp of V2: 0 to 10 mm between L/3 and L/2, level on both sides."""
     length = 25.0
     profile = Profile.piecewise_linear(
-        [0.0, length / 3, length / 2, length], [0.0, 0.0, 0.01, 0.01]
+        [0.0, length / 3, length / 2, length], [0.0, 0.0, 0.01, 0.01], beyond="level"
     )
     z, slope = profile.at([-5.0, 4.0, length * 5 / 12, 20.0, 99.0])
     assert z == pytest.approx([0.0, 0.0, 0.005, 0.01, 0.01])

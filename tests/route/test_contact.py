@@ -6,6 +6,7 @@ import pytest
 from models import simple_beam, small_floor
 from trundle.errors import InputError
 from trundle.route import (
+    Abrupt,
     ConstantSpeed,
     DriveIn,
     Hat,
@@ -163,6 +164,15 @@ def test_the_share_on_the_floor_is_whole_inside_and_its_slope_is_its_derivative(
     np.testing.assert_allclose(
         slope[corners], difference[corners], atol=0.51 if not isinstance(entry, DriveIn) else 1e-5
     )
+
+
+def test_an_abrupt_entry_is_all_or_nothing():
+    """The front axle stands on the edge at time 0, with its whole load."""
+    entry = Abrupt()
+    share, slope = entry.share(np.array([-3.0, -1e-9, 0.0, 5.0, 20.0, 20.1]), 20.0)
+    assert share.tolist() == [0.0, 0.0, 1.0, 1.0, 1.0, 0.0]
+    assert not slope.any()
+    assert entry.lead(12.5) == 0.0
 
 
 def test_the_rate_that_a_wheel_feels_is_the_derivative_of_its_height():

@@ -10,7 +10,7 @@ from test_bad_input import GOOD
 
 from trundle.criteria import VC, assess_reduced, find_criterion
 from trundle.errors import ComputationError, InputError
-from trundle.response import few_runs_warnings, level_warnings, percentile_interval
+from trundle.response import BandSpectra, few_runs_warnings, level_warnings, percentile_interval
 from trundle.signals import Record, band_edges, mid_band_frequencies, motion_of
 from trundle.study import load_study
 from trundle.study.assess_record import assess_record, read_simulated
@@ -369,14 +369,32 @@ def test_single_numbers_of_a_short_record_are_not_passed():
 
 
 def test_the_warning_of_scatter_is_that_of_the_averaging_rule():
-    """An average over 2 s scatters by 1/sqrt(2) of one over 1 s; over an event, its length decides."""
+    """By what the filter passes in a window; no more than a Rayleigh envelope's 52.3 %."""
     texts = {
         rule: str(level_warnings(rule, 30.0)[0]) for rule in ("max_1s", "slow", "fast", "event")
     }
-    assert "104 % in the 1 Hz band" in texts["max_1s"]  # 1 / (2 sqrt(0.2308 Hz x 1 s))
-    assert "74 % in the 1 Hz band" in texts["slow"]
-    assert "208 % in the 1 Hz band" in texts["fast"]
+    assert "51 % at 1 Hz, 32 % at 8 Hz, 11 % at 80 Hz" in texts["max_1s"]
+    assert "46 % at 1 Hz" in texts["slow"]
+    assert "52 % at 1 Hz" in texts["fast"]
     assert "record of 30 s" in texts["event"]
+
+
+def test_the_scatter_of_many_runs_is_taken_from_them():
+    """Levels 1 and 3 by halves have a mean of 2 and a standard deviation of 1: 50 %."""
+    mid_band = 10.0 ** np.array([0.0, 0.9, 1.9])
+    values = np.tile([1.0, 3.0], 500)[:, None, None] * np.array([1.0, 2.0, np.nan])
+    levels = BandSpectra(
+        mid_band=mid_band,
+        values=values,
+        times=values,
+        resolved=np.array([True, True, False]),
+        averaging="max_1s",
+        point_names=("p",),
+        quantity="band_rms_velocity",
+    )
+    text = str(level_warnings("max_1s", 30.0, levels=levels)[0])
+    assert "over the runs levels scatter by 50 % at 1 Hz, 50 % at 8 Hz" in text
+    assert "80 Hz" not in text
 
 
 def test_a_percentile_of_few_runs_is_doubted():

@@ -14,10 +14,10 @@ from trundle.vehicle import (
     Axle,
     Body,
     Hinge,
-    articulated_truck_5_axle,
     build_vehicle,
     container_truck_40ft,
     damping_coefficient,
+    library_vehicle,
     quarter_car,
     sprung_mass,
 )
@@ -85,12 +85,11 @@ def test_library_vehicles_stand_on_level_ground(name):
     )
 
 
-def test_moments_balance_on_the_articulated_truck():
-    truck = articulated_truck_5_axle()
-    total = 4500 + 31450 + 700 + 1100 + 3 * 750
-    assert truck.total_mass == pytest.approx(total)
-    masses = np.array([4500, 31450, 700, 1100, 750, 750, 750])
-    places = np.array([0.5, 0.5 + 2.15 + 6.15, *truck.setback])
+def test_moments_balance_on_the_tractor_and_semitrailer():
+    truck = library_vehicle("tractor_3axle_semitrailer_6_axle")
+    masses = np.array([10000, 20000, 996.4, 1226.4, 1226.4, 728, 728, 728])
+    assert truck.total_mass == pytest.approx(masses.sum())
+    places = np.array([2.0, 10.6, *truck.setback])
     assert truck.static_forces @ truck.setback == pytest.approx(GRAVITY * masses @ places, rel=1e-9)
 
 

@@ -170,11 +170,24 @@ def mitigate(
 
 
 @app.command()
-def check(study: StudyPath) -> None:
+def check(
+    study: StudyPath,
+    *,
+    meshes: Annotated[
+        bool,
+        typer.Option(
+            "--meshes", help="Compute a few runs on half the mesh size too, and show the change."
+        ),
+    ] = False,
+) -> None:
     """Check a study: every mistake at once with its remedy, or a summary and a plan sketch."""
     from trundle.cli import commands
 
     commands.check(study)
+    if meshes:
+        from trundle.cli import meshes_command
+
+        meshes_command.compare(study)
 
 
 @app.command()

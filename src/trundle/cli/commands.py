@@ -10,7 +10,9 @@ from trundle.cli.sketch import plan_sketch
 from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
 from trundle.dynamics import natural_modes
 from trundle.errors import InputError
+from trundle.study.assumptions import early_end_warnings
 from trundle.study.build import load_study
+from trundle.study.doubts import study_doubts
 from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
 from trundle.vehicle import GRAVITY, VEHICLES
 
@@ -23,15 +25,21 @@ def check(path: Path) -> None:
     """Check a study and print what it would do."""
     study = load_study(path)
     cells = len(study.cases) * len(study.roads) * len(study.methods)
-    print(f"{path}: no mistakes\n\n{study.title}")
+    print(f"{path}: no mistakes")
+    for warning in study_doubts(study):
+        print(f"warning: {warning}")
+    print(f"\n{study.title}")
     print(
         f"floor: {study.floor.name}, {len(study.floor.nodes)} nodes, "
         f"{study.floor.n_dofs} degrees of freedom, "
         f"{study.floor.moving_mass() / 1e3:.0f} t moving vertically"
     )
-    print(f"work:  {cells} cells of {study.runs} runs, records of {study.duration:g} s")
+    print(f"work:  {cells} cells of {study.runs} runs, records of up to {study.longest_record:g} s")
     for method in study.methods:
         print(f"method {method.name!r}: {method.interaction}; entry: {method.entry}")
+    for case in study.cases:
+        for warning in early_end_warnings(study, case):
+            print(f"warning: {warning}")
     print(plan_sketch(study))
 
 

@@ -10,7 +10,7 @@ from typing import TypeVar
 from trundle._checks import one_of
 from trundle.cli.screen import print_table, progress_bar
 from trundle.errors import InputError
-from trundle.report import PARTLY, mitigation_rows, write_mitigation_report
+from trundle.report import PARTLY, UNKNOWN, mitigation_rows, write_mitigation_report
 from trundle.road import CLASS_NAMES
 from trundle.signals import Isolator
 from trundle.study.build import load_study
@@ -19,7 +19,7 @@ from trundle.study.mitigation import try_changes
 from trundle.study.store import check_target, mark_results, new_results_folder
 from trundle.study.sweep import Sweep
 from trundle.units import KMH, to_si
-from trundle.vehicle import VEHICLES
+from trundle.vehicle import library_vehicle
 
 __all__ = ["mitigate"]
 
@@ -65,9 +65,8 @@ def mitigate(
 
 def _levers(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[list[Change]]:
     """Return the changes of each kind together."""
-    names = _each("--vehicle", vehicles, lambda text: one_of("--vehicle", text, VEHICLES))
     levers = [
-        [Change(label=name.replace("_", " "), vehicle=VEHICLES[name]()) for name in names],
+        _each("--vehicle", vehicles, _vehicle),
         [
             Change(label=f"slab {1e3 * slab:g} mm", slab_thickness=slab)
             for slab in _each("--slab", slabs, _slab)
@@ -88,6 +87,10 @@ def _levers(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[li
             if times > 1:
                 raise InputError(f"{option}: {label} stands there {times} times; once is enough")
     return levers
+
+
+def _vehicle(text: str) -> Change:
+    return Change(label=text.replace("_", " "), vehicle=library_vehicle(text))
 
 
 def _slab(text: str) -> float:
@@ -149,5 +152,5 @@ def _print(sweep: Sweep) -> None:
                     for speed in sweep.speeds
                 ),
             )
-    if any(title.endswith("*") for title in found.values()):
+    if UNKNOWN in found.values():
         print(PARTLY)

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from trundle.cli.screen import print_table
+from trundle.criteria import Verdict
 from trundle.report import (
     bound_rows,
     comparison_rows,
     exact_rows,
+    road_words,
     summary_rows,
     verdict_matrix,
 )
@@ -124,17 +126,26 @@ def _print_verdicts(result: StudyResult) -> None:
     if assessment is None:
         return
     print_table(
-        f"Verdict at {assessment.percentile:g} % of the runs, averaging {assessment.averaging}; "
-        "margin = limit / level",
+        f"Verdict on vertical motion at {assessment.percentile:g} % of the runs, averaging "
+        f"{assessment.averaging}; margin = limit / level in the bands computed and excited; "
+        f"road {', '.join(road_words(result.study))}",
         ("criterion", *columns),
         (
             (
                 title,
-                *(
-                    v.status if np.isnan(v.margin) else f"{v.status} {v.margin:.3g}"
-                    for v in verdicts
-                ),
+                *(_outcome(v) for v in verdicts),
             )
             for title, verdicts in matrix
         ),
     )
+    reasons = (r for _, vs in matrix for v in vs if v.status == "not assessed" for r in v.reasons)
+    for reason in dict.fromkeys(reasons):
+        print(f"not assessed: {reason}")
+    print("? a pass whose 95 % interval reaches below 1: more runs might fail it")
+
+
+def _outcome(verdict: Verdict) -> str:
+    """Write outcome and margin; a question mark behind a pass that is not sure."""
+    if np.isnan(verdict.margin):
+        return verdict.status
+    return f"{verdict.status} {verdict.margin:.3g}{'?' if verdict.uncertain else ''}"

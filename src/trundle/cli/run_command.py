@@ -11,6 +11,7 @@ from trundle.cli.screen import progress_bar
 from trundle.errors import InputError
 from trundle.report import write_report
 from trundle.study.build import load_study
+from trundle.study.doubts import study_doubts
 from trundle.study.run import run_study
 from trundle.study.scale_out import Cluster, cluster_at, local_cluster
 from trundle.study.store import check_target, new_results_folder, write_results
@@ -38,6 +39,8 @@ def run(path: Path, out: Path, *, workers: int | None, scheduler: str | None, fr
         raise InputError("--workers starts a cluster and --scheduler uses one: give one of them")
     study = load_study(path)
     check_target(out)
+    for warning in study_doubts(study):
+        print(f"warning: {warning}")
     place = out.resolve()
     with (
         unfinished_of(study, out, fresh=fresh) as store,

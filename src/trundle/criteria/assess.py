@@ -12,9 +12,15 @@ from trundle._typing import Array
 from trundle.criteria.curve import BY_FREQUENCY, Criterion
 from trundle.criteria.verdict import BandOutcomes, Status, Verdict
 from trundle.errors import ComputationError
-from trundle.response import BandSpectra, Reduced, SpectrumQuantity, reduce_runs
+from trundle.response import (
+    BandSpectra,
+    Reduced,
+    SpectrumQuantity,
+    percentile_interval,
+    reduce_runs,
+)
 from trundle.signals import Averaging, nominal_frequency
-from trundle.simulate import Runs
+from trundle.simulate import Coverage, Runs
 
 __all__ = ["assess", "assess_reduced", "best_class", "spectra_asked_for"]
 
@@ -56,6 +62,7 @@ def assess(
         percentile=percentile,
         top=min(runs.f_max, runs.sampling_frequency / 2.5),
         events=events,
+        coverage=runs.coverage,
     )
 
 
@@ -73,6 +80,7 @@ def assess_reduced(
     percentile: float,
     top: float,
     events: float = 1.0,
+    coverage: Coverage | None = None,
 ) -> tuple[Verdict, ...]:
     """Hold what was kept of every run against criteria.
 
@@ -88,7 +96,10 @@ def assess_reduced(
         Highest frequency that single numbers contain [Hz].
     events : float
         How many such events a vibration dose is for.
+    coverage : Coverage, optional
+        Which bands the road excites, and whether the vehicles have left; without it all do.
     """
+    coverage = coverage or Coverage()
     within("percentile", percentile, 0.0, 100.0)
     many = (criteria,) if isinstance(criteria, Criterion) else tuple(criteria)
     verdicts = []
@@ -99,10 +110,13 @@ def assess_reduced(
             elif criterion.quantity in BY_FREQUENCY:
                 spectra = {"band_rms_velocity": reduced.spectra, **reduced.more}
                 one = spectra[criterion.quantity]
-                verdicts.append(_by_band(one, i, point, criterion, percentile))
+                verdicts.append(_by_band(one, i, point, criterion, percentile, coverage=coverage))
             else:
                 values, times = _numbers(reduced, i, criterion, events)
-                verdicts.append(_by_number(values, times, point, criterion, percentile, top=top))
+                reach = (top, coverage)
+                verdicts.append(
+                    _by_number(values, times, point, criterion, percentile, reach=reach)
+                )
     return tuple(verdicts)
 
 
@@ -121,6 +135,8 @@ def _not_computed(criterion: Criterion, point: str, percentile: float) -> Verdic
         percentile=percentile,
         unresolved=(),
         averaging=criterion.averaging,
+        axis=criterion.axis,
+        reasons=("horizontal motion is not computed",),
     )
 
 
@@ -138,13 +154,22 @@ def _numbers(
 
 
 def _by_band(
-    spectra: BandSpectra, point: int, name: str, criterion: Criterion, percentile: float
+    spectra: BandSpectra,
+    point: int,
+    name: str,
+    criterion: Criterion,
+    percentile: float,
+    *,
+    coverage: Coverage,
 ) -> Verdict:
     limits = criterion.limit(spectra.mid_band)
     asked = np.isfinite(limits)
-    usable = asked & spectra.resolved
+    excited = coverage.excites(spectra.mid_band)
+    usable = asked & spectra.resolved & excited
     values = spectra.values[:, point]
     missing = _missing(spectra, criterion, asked)
+    unexcited = _named(spectra, spectra.mid_band[asked & spectra.resolved & ~excited])
+    reasons = (*_not_shown(missing), *coverage.reasons(waves=bool(unexcited)))
     _refuse_non_finite(values[:, usable], criterion, name)
     level = np.full(len(limits), np.nan)
     known = spectra.resolved
@@ -157,6 +182,8 @@ def _by_band(
             status="not assessed",
             percentile=percentile,
             unresolved=missing,
+            unexcited=unexcited,
+            reasons=reasons,
             averaging=spectra.averaging,
             bands=outcomes,
         )
@@ -167,7 +194,7 @@ def _by_band(
     if margin < 1.0:
         status: Status = "fail"
     else:
-        status = "not assessed" if missing else "pass"
+        status = "not assessed" if reasons else "pass"
     nearest = int(np.abs(values[:, worst] - level[worst]).argmin())
     return Verdict(
         criterion=criterion,
@@ -175,8 +202,11 @@ def _by_band(
         status=status,
         percentile=percentile,
         unresolved=missing,
+        unexcited=unexcited,
+        reasons=reasons,
         averaging=spectra.averaging,
         margin=margin,
+        interval=_interval(values[:, worst], percentile, float(limits[worst])),
         governing_band=float(spectra.mid_band[worst]),
         value=float(level[worst]),
         limit=float(limits[worst]),
@@ -199,8 +229,32 @@ def _missing(spectra: BandSpectra, criterion: Criterion, asked: Array) -> tuple[
     """Return nominal frequencies that the curve asks for and nobody computed."""
     lost = spectra.mid_band[asked & ~spectra.resolved]
     if spectra.quantity == "narrow_band_acceleration":
-        return tuple(float(f) for f in lost)
-    return tuple(nominal_frequency(f) for f in (*lost, *criterion.bands_beyond()))
+        return _named(spectra, lost)
+    return _named(spectra, np.concatenate([lost, criterion.bands_beyond()]))
+
+
+def _named(spectra: BandSpectra, frequencies: Array) -> tuple[float, ...]:
+    """Return bands by their nominal frequencies, lines as they are."""
+    if spectra.quantity == "narrow_band_acceleration":
+        return tuple(float(f) for f in frequencies)
+    return tuple(nominal_frequency(f) for f in frequencies)
+
+
+def _not_shown(missing: tuple[float, ...]) -> tuple[str, ...]:
+    """Say which bands step or modes do not show."""
+    if not missing:
+        return ()
+    names = ", ".join(f"{f:g}" for f in missing[:4]) + (" ..." if len(missing) > 4 else "")
+    return (f"{names} Hz are not shown: shorten dt or raise f_max, if bands reach that far at all",)
+
+
+def _interval(values: Array, percentile: float, limit: float) -> tuple[float, float]:
+    """Return where a margin lies with 95 % confidence."""
+    if len(values) < 2:
+        return (np.nan, np.nan)
+    low, high = percentile_interval(values, percentile)
+    tiny = np.finfo(float).tiny
+    return limit / max(high, tiny), limit / max(low, tiny) if np.isfinite(low) else np.inf
 
 
 def _outcomes(spectra: BandSpectra, level: Array, limits: Array, usable: Array) -> BandOutcomes:
@@ -219,24 +273,29 @@ def _by_number(
     criterion: Criterion,
     percentile: float,
     *,
-    top: float,
+    reach: tuple[float, Coverage],
 ) -> Verdict:
     limit = float(criterion.limits[0])
     _refuse_non_finite(values, criterion, point)
     value = float(np.percentile(values, percentile))
     margin = limit / max(value, np.finfo(float).tiny)
     # A broadband number covers the curve only as far as the computation reaches.
-    reach = min(criterion.frequencies[-1], _TOP)
-    missing = () if top >= reach * (1 - 1e-6) else (float(reach),)
-    status: Status = "fail" if margin < 1.0 else ("not assessed" if missing else "pass")
+    (top, coverage), asked = reach, float(min(criterion.frequencies[-1], _TOP)) * (1 - 1e-6)
+    missing = () if top >= asked else (round(asked, 1),)
+    unexcited = () if coverage.excited_to >= asked else (round(asked, 1),)
+    reasons = (*_not_shown(missing), *coverage.reasons(waves=bool(unexcited)))
+    status: Status = "fail" if margin < 1.0 else ("not assessed" if reasons else "pass")
     return Verdict(
         criterion=criterion,
         point=point,
         status=status,
         percentile=percentile,
         unresolved=missing,
+        unexcited=unexcited,
+        reasons=reasons,
         averaging=criterion.averaging,
         margin=margin,
+        interval=_interval(values, percentile, limit),
         value=value,
         limit=limit,
         share_exceeding=float((values > limit).mean()),

@@ -13,6 +13,7 @@ from trundle._typing import Array
 from trundle.criteria.curve import Criterion
 from trundle.errors import InputError
 from trundle.response import FloorMap
+from trundle.simulate import Coverage
 
 __all__ = ["ClassMap", "class_map", "envelope_of"]
 
@@ -31,13 +32,15 @@ class ClassMap:
     criteria : tuple of Criterion
         Those that a map can be held against: velocity in bands, peak acceleration.
     margin : ndarray of float, shape (n_criteria, n_places)
-        Smallest limit over level in the bands computed; below 1 fails; NaN where none was.
+        Smallest limit over level in the bands computed and excited; below 1 fails; NaN where none
+        was.
     governing_band : ndarray of float, shape (n_criteria, n_places)
         Mid-band frequency where it is smallest [Hz]; NaN for peaks.
     share_exceeding : ndarray of float, shape (n_criteria, n_places)
         Share of runs above the limit in any band, 0 to 1.
     complete : tuple of bool
-        Whether everything that each criterion asks for was computed; else it cannot be passed.
+        Whether everything that each criterion asks for was computed and excited, and the vehicles
+        have left; else it cannot be passed.
     percentile : float
         Share of runs that levels cover, 0 to 100.
     """
@@ -51,12 +54,17 @@ class ClassMap:
     percentile: float
 
     def classes(self) -> Int[Array, " places"]:
-        """Return which velocity criterion is the strictest that is passed; -1 for none.
+        """Return which velocity criterion is the strictest that is passed.
 
-        One criterion is stricter than another whose smallest limit is larger.
+        One criterion is stricter than another whose smallest limit is larger. -1 stands where none
+        is met, -2 where none is known to be passed and the widest not known to be failed.
         """
+        order = self.order()
         found = np.full(self.margin.shape[1], -1)
-        for i in self.order():
+        if order:
+            widest = self.margin[order[0]]
+            found[~(widest < 1.0)] = -2
+        for i in order:
             if self.complete[i]:
                 found[self.margin[i] >= 1.0] = i
         return found
@@ -75,7 +83,12 @@ class ClassMap:
 
 
 def class_map(
-    floor: FloorMap, criteria: Sequence[Criterion], *, percentile: float = 95.0, f_max: float
+    floor: FloorMap,
+    criteria: Sequence[Criterion],
+    *,
+    percentile: float = 95.0,
+    f_max: float,
+    coverage: Coverage | None = None,
 ) -> ClassMap:
     """Hold a map against criteria.
 
@@ -88,15 +101,18 @@ def class_map(
     percentile : float
         Share of runs that the compared level must cover, 0 to 100.
     f_max : float
-        Highest frequency that the computation contains [Hz].
+        Highest frequency that modes and step show as it is [Hz].
+    coverage : Coverage, optional
+        Which bands the road excites, and whether the vehicles have left; without it all do.
     """
+    reach = coverage or Coverage()
     within("percentile", percentile, 0.0, 100.0)
     some = tuple(c for c in criteria if c.quantity in _MAPPED and c.axis != "horizontal")
     level = np.percentile(floor.band_levels, percentile, axis=0)
     found = [
-        _by_band(floor, level, c)
+        _by_band(floor, level, c, reach)
         if c.quantity == "band_rms_velocity"
-        else _by_peak(floor, c, percentile, f_max)
+        else _by_peak(floor, c, percentile, min(f_max, reach.excited_to) if reach.left else 0.0)
         for c in some
     ]
     shape = (len(some), len(floor.places))
@@ -132,14 +148,14 @@ def envelope_of(maps: Sequence[ClassMap]) -> ClassMap:
 
 
 def _by_band(
-    floor: FloorMap, level: Array, criterion: Criterion
+    floor: FloorMap, level: Array, criterion: Criterion, coverage: Coverage
 ) -> tuple[Array, Array, Array, bool]:
     limits = criterion.limit(floor.mid_band)
     asked = np.isfinite(limits)
-    usable = asked & floor.resolved
+    usable = asked & floor.resolved & coverage.excites(floor.mid_band)
     n_places = len(floor.places)
     beyond = len(criterion.bands_beyond()) > 0
-    complete = bool(usable.any() and not (asked & ~floor.resolved).any() and not beyond)
+    complete = bool(usable.any() and not (asked & ~usable).any() and not beyond and coverage.left)
     if not usable.any():
         nothing = np.full(n_places, np.nan)
         return nothing, nothing, nothing, False

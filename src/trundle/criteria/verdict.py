@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.criteria.curve import Criterion
+from trundle.signals import nominal_frequency
 
 __all__ = ["BandOutcomes", "Status", "Verdict"]
 
@@ -53,12 +54,22 @@ class Verdict:
     percentile : float
         Share of runs that the compared value covers, 0 to 100.
     unresolved : tuple of float
-        Nominal frequencies of bands in the curve's range that were not computed [Hz].
+        Nominal frequencies of bands in the curve's range that step or modes do not show [Hz].
+    unexcited : tuple of float
+        Nominal frequencies of bands that the road does not excite; for a single number, how far it
+        is asked to reach [Hz].
+    reasons : tuple of str
+        Why something is not assessed, and what would help.
+    axis : str
+        Direction of the motion that was compared.
     averaging : str
         Averaging rule of the value.
     margin : float
-        Smallest limit over value in the bands computed; below 1 fails. This and the rest are
-        NaN where nothing was computed.
+        Smallest limit over value in the bands computed and excited; below 1 fails. This and the
+        rest are NaN where nothing was.
+    interval : tuple of float
+        Where the margin at the governing band lies with 95 % confidence, for that many runs; 0 or
+        infinite where there are too few of them for a limit.
     governing_band : float
         Mid-band frequency where the margin is smallest [Hz]; NaN for single numbers.
     value, limit : float
@@ -77,7 +88,11 @@ class Verdict:
     percentile: float
     unresolved: tuple[float, ...]
     averaging: str
+    unexcited: tuple[float, ...] = ()
+    reasons: tuple[str, ...] = ()
+    axis: str = "vertical"
     margin: float = np.nan
+    interval: tuple[float, float] = (np.nan, np.nan)
     governing_band: float = np.nan
     value: float = np.nan
     limit: float = np.nan
@@ -85,7 +100,39 @@ class Verdict:
     time: float = np.nan
     bands: BandOutcomes | None = None
 
+    @property
+    def uncertain(self) -> bool:
+        """Whether it is a pass whose interval reaches below 1: more runs might fail it."""
+        return self.status == "pass" and bool(self.interval[0] < 1.0)
+
+    @property
+    def roughest(self) -> float:
+        """Road roughness Gd(n0) that is still passed, over that of the road; NaN if unknown.
+
+        The square of the margin. A passed margin gives a lower bound, for the part of the level
+        that the static loads give does not grow with the road; a failed one an upper bound.
+        """
+        return self.margin**2
+
+    @property
+    def words(self) -> str:
+        """State outcome, margin, its interval and band in a few words."""
+        if np.isnan(self.margin):
+            return self.status
+        at = "" if np.isnan(self.governing_band) else f" at {_hertz(self.governing_band)} Hz"
+        low, high = self.interval
+        between = f" ({low:.3g} to {high:.3g})" if np.isfinite(low) and 0.0 < low < high else ""
+        few = ", too few runs to be sure" if low == 0.0 else ", not surely"
+        sure = few if self.uncertain else ""
+        return f"{self.status}{sure}, margin {self.margin:.3g}{between}{at}"
+
     def __str__(self) -> str:
         """State the verdict in one line."""
-        at = "" if np.isnan(self.governing_band) else f" at {self.governing_band:.3g} Hz"
-        return f"{self.point}, {self.criterion.title}: {self.status}, margin {self.margin:.3g}{at}"
+        why = f"; {'; '.join(self.reasons)}" if self.status == "not assessed" else ""
+        return f"{self.point} {self.axis}, {self.criterion.title}: {self.words}{why}"
+
+
+def _hertz(f: float) -> str:
+    """Write a mid-band frequency by its name, another as it is."""
+    name = nominal_frequency(f)
+    return f"{name if abs(name - f) < 0.03 * f else f:.3g}"

@@ -21,13 +21,27 @@ class Krylov:
     against all, which keeps round-off from bringing found eigenvectors back.
     """
 
-    def __init__(self, mass: SparseMatrix, factor: Factor, capacity: int) -> None:
+    def __init__(
+        self,
+        mass: SparseMatrix,
+        factor: Factor,
+        capacity: int,
+        *,
+        beside: Array | None = None,
+        start: int = 0,
+    ) -> None:
+        """`beside` (n_dofs, n_found) are vectors that the space stays M-orthogonal to.
+
+        `start` chooses the vectors that the space grows from.
+        """
         self._mass, self._factor, self._capacity = mass, factor, capacity
         n_dofs = mass.shape[0]
+        self._beside = np.zeros((n_dofs, 0)) if beside is None else beside
         self._basis = np.zeros((n_dofs, capacity + BLOCK), order="F")
         self._projected = np.zeros((capacity + BLOCK, capacity + BLOCK))
-        start = factor.solve(mass @ np.random.default_rng(0).standard_normal((n_dofs, BLOCK)))
-        self._block, self._loaded, self._triangle = _orthonormal(mass, start)
+        drawn = np.random.default_rng(start).standard_normal((n_dofs, BLOCK))
+        first = self._apart(factor.solve(mass @ drawn))
+        self._block, self._loaded, self._triangle = _orthonormal(mass, first)
         self.size = 0
 
     def extend(self) -> bool:
@@ -38,7 +52,7 @@ class Krylov:
         self._basis[:, here] = self._block
         self.size += BLOCK
         basis = self._basis[:, : self.size]
-        new = self._factor.solve(self._loaded)
+        new = self._apart(self._factor.solve(self._loaded))
         # Large parts lie along the last two blocks; the rest is what round-off brings back.
         overlap = np.zeros((self.size, BLOCK))
         overlap[here] = self._loaded.T @ new
@@ -58,6 +72,12 @@ class Krylov:
         self._projected[: self.size, here] = overlap
         self._projected[here, : self.size] = overlap.T
         return True
+
+    def _apart(self, block: Array) -> Array:
+        """Take off what lies along the vectors beside the space."""
+        if not self._beside.shape[1]:
+            return block
+        return block - self._beside @ (self._beside.T @ (self._mass @ block))
 
     def ritz_pairs(self) -> tuple[Array, Array, Array]:
         """Return inverse eigenvalues, rising, their vectors in the basis, and error bounds."""

@@ -6,6 +6,10 @@ hundred modes a shift keep the subspace in cache, where one subspace for a thous
 read from memory at every step. Each factorisation counts the eigenvalues below its shift
 (Sylvester's law of inertia), so that none is missed between two shifts.
 
+A block of b vectors shows b copies of an eigenvalue; further ones, as equal columns and bays have
+them, do not appear in its space. Where inertia counts more than were found, the search begins anew
+from other vectors, M-orthogonal to those found, until the count is met.
+
 References
 ----------
 R. G. Grimes, J. G. Lewis and H. D. Simon, SIAM J. Matrix Anal. Appl. 15 (1994) 228-272.
@@ -34,6 +38,9 @@ _USUAL_SUBSPACE = 2.3  # columns a mode takes to converge; looking earlier costs
 _ACCURATE = 1e-11  # relative error of an inverse eigenvalue that counts as converged
 _EDGES = 16  # last modes of a slice among which the widest gap is its end
 _MIDDLE = 0.62  # of the highest frequency: as many modes above as below, with what each costs
+_EQUAL = 1e-5  # relative distance of eigenvalues that may be copies of one
+_ANEW = 60  # searches beside what is found, each of which shows another block of copies
+_LARGEST = 2400  # modes that one shift may be left with where no shift parts them
 _NUDGES = 4  # shifts tried beside each other if one meets an eigenvalue
 
 
@@ -158,10 +165,13 @@ def _march(
             shift = _next_shift(pencil, interval, found, last, edge)
         left = shift.below - found
         right = min(wanted - shift.below, max(BLOCK, _share(wanted - found) - left))
-        part = _near(pencil.mass, shift, left, right)
+        whole = shift.below + right == wanted
+        part = _near(pencil.mass, shift, left, right, (edge, interval.limit if whole else np.inf))
         edge = interval.limit
-        if shift.below + right < wanted:
+        if not whole:
             part, edge = _up_to_a_gap(part)
+            if _copies(part.eigenvalues) >= BLOCK:
+                part = _completed(pencil, shift, part, (last[-1], edge), found)
         _check(part, last[-1], edge)
         keep(found, part)
         found += len(part.eigenvalues)
@@ -187,10 +197,83 @@ def _check(part: EigenSlice, before: float, edge: float) -> None:
 
 def _up_to_a_gap(part: EigenSlice) -> tuple[EigenSlice, float]:
     """Cut a slice in the widest gap near its end, so that equal modes stay together."""
-    last = part.eigenvalues[-_EDGES:]
-    cut = len(part.eigenvalues) - len(last) + 1 + int(np.argmax(np.diff(last) / last[1:]))
+    gaps = np.diff(part.eigenvalues) / part.eigenvalues[1:]
+    # of many equal modes all of the last ones may be copies: then the last gap before them
+    late = max(0, len(gaps) - _EDGES + 1)
+    wide = np.flatnonzero(gaps > _EQUAL)
+    if len(wide) and wide[-1] < late:
+        late = int(wide[-1])
+    cut = late + 1 + int(np.argmax(gaps[late:]))
     edge = 0.5 * (part.eigenvalues[cut - 1] + part.eigenvalues[cut])
     return EigenSlice(eigenvalues=part.eigenvalues[:cut], shapes=part.shapes[:, :cut]), float(edge)
+
+
+def _copies(eigenvalues: Array) -> int:
+    """Return how many eigenvalues at most lie together."""
+    apart = np.diff(eigenvalues) > _EQUAL * np.abs(eigenvalues[1:])
+    ends = np.concatenate([[-1], np.flatnonzero(apart), [len(eigenvalues) - 1]])
+    return int(np.diff(ends).max())
+
+
+def _completed(
+    pencil: _Pencil, shift: _Shift, part: EigenSlice, bounds: tuple[float, float], found: int
+) -> EigenSlice:
+    """Return a slice with all copies that inertia counts up to its end."""
+    wanted = pencil.near(float(np.sqrt(bounds[1]))).below - found
+    return _hunted(pencil.mass, shift, part, bounds, wanted)
+
+
+def _hunted(
+    mass: SparseMatrix, shift: _Shift, part: EigenSlice, bounds: tuple[float, float], wanted: int
+) -> EigenSlice:
+    """Search anew beside what is found until so many eigenpairs lie within bounds.
+
+    Raises
+    ------
+    ConvergenceError
+        No further one appears, or more were found than inertia counts.
+    """
+    values, shapes = part.eigenvalues, part.shapes
+    for start in range(1, _ANEW):
+        missing = wanted - len(values)
+        if missing <= 0:
+            break
+        more = _beside(mass, shift, shapes, bounds, missing=missing, start=start)
+        values = np.concatenate([values, more.eigenvalues])
+        shapes = np.hstack([shapes, more.shapes])
+    if len(values) != wanted:
+        raise ConvergenceError(
+            f"between {np.sqrt(max(bounds[0], 0.0)) / (2.0 * np.pi):.6g} Hz and the next gap "
+            f"inertia counts {wanted} modes, and {len(values)} were found",
+            residual=float("nan"),
+        )
+    order = np.argsort(values)
+    return EigenSlice(eigenvalues=values[order], shapes=shapes[:, order])
+
+
+def _beside(
+    mass: SparseMatrix,
+    shift: _Shift,
+    shapes: Array,
+    bounds: tuple[float, float],
+    *,
+    missing: int,
+    start: int,
+) -> EigenSlice:
+    """Return some of the missing eigenpairs, found M-orthogonal to others."""
+    capacity = min(mass.shape[0] - 1, 5 * missing + 40 * BLOCK)
+    krylov = Krylov(mass, shift.factor, capacity, beside=shapes, start=start)
+    while krylov.extend():
+        if krylov.size % (4 * BLOCK):
+            continue
+        nu, ritz, errors = krylov.ritz_pairs()
+        values = shift.value + 1.0 / nu
+        within = (values >= bounds[0]) & (values < bounds[1])
+        good = within & (errors <= _ACCURATE * np.abs(nu))
+        if good.any() and (good.sum() >= min(missing, BLOCK) or (within == good).all()):
+            pick = np.flatnonzero(good)[:missing]
+            return EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
+    return EigenSlice(eigenvalues=np.zeros(0), shapes=np.zeros((mass.shape[0], 0)))
 
 
 def _next_shift(
@@ -206,19 +289,24 @@ def _next_shift(
     else:
         spacing = (end - start) / (interval.end - found)
     distance = min(ahead * spacing, 0.5 * (end - start))
+    shift = pencil.near(float(start + distance))
     for _ in range(40):
         shift = pencil.near(float(start + distance))
         if shift.below - found <= 1.5 * ahead + BLOCK:
             return shift
         distance *= max(0.25, ahead / (shift.below - found))
+    if shift.below - found <= _LARGEST:
+        return shift  # so many equal modes: one slice takes them all
     raise ConvergenceError(
         f"no shift above {start / (2.0 * np.pi):.6g} Hz parts the modes that lie close together",
         residual=float("nan"),
     )
 
 
-def _near(mass: SparseMatrix, shift: _Shift, left: int, right: int) -> EigenSlice:
-    """Return so many eigenpairs on the left of a shift and on its right."""
+def _near(
+    mass: SparseMatrix, shift: _Shift, left: int, right: int, bounds: tuple[float, float]
+) -> EigenSlice:
+    """Return so many eigenpairs on the left of a shift and on its right, all within bounds."""
     wanted = left + right
     capacity = min(mass.shape[0] - 1, 5 * wanted + 32 * BLOCK)
     krylov = Krylov(mass, shift.factor, capacity)
@@ -231,10 +319,24 @@ def _near(mass: SparseMatrix, shift: _Shift, left: int, right: int) -> EigenSlic
             if good[:left].all() and good[len(nu) - right :].all():
                 pick = np.r_[:left, len(nu) - right : len(nu)]
                 eigenvalues = shift.value + 1.0 / nu[pick]
+                inside = (eigenvalues >= bounds[0]) & (eigenvalues < bounds[1])
+                pick, eigenvalues = pick[inside], eigenvalues[inside]
                 order = np.argsort(eigenvalues)
                 shapes = krylov.vectors(ritz[:, pick[order]])
-                return EigenSlice(eigenvalues=eigenvalues[order], shapes=shapes)
+                part = EigenSlice(eigenvalues=eigenvalues[order], shapes=shapes)
+                # what lies beyond the bounds converged in the place of copies that do not appear
+                return part if inside.all() else _hunted(mass, shift, part, bounds, wanted)
             next_look = int(1.08 * krylov.size)
+    # Where copies are missing, others in their place may be too far to converge.
+    whole = bool(np.isfinite(bounds[1]))
+    if whole or left:
+        bounds = bounds if whole else (bounds[0], shift.value)
+        nu, ritz, errors = krylov.ritz_pairs()
+        values = shift.value + 1.0 / nu
+        found = (values >= bounds[0]) & (values < bounds[1]) & (errors <= _ACCURATE * np.abs(nu))
+        pick = np.flatnonzero(found)
+        part = EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
+        return _hunted(mass, shift, part, bounds, wanted if whole else left)
     raise ConvergenceError(
         f"{wanted} modes wanted near {np.sqrt(max(shift.value, 0.0)) / (2.0 * np.pi):.6g} Hz by "
         f"inertia, but the iteration stopped short with a subspace of {krylov.size}",

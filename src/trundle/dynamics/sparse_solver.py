@@ -150,7 +150,7 @@ class _PardisoFactor:
         # Every solver would search the environment for the library again.
         os.environ.setdefault("PYPARDISO_MKL_RT", str(solver.libmkl._name))
         # MKL holds the factor outside Python's memory; give it back with this object.
-        weakref.finalize(self, solver.free_memory)
+        weakref.finalize(self, solver.free_memory, everything=True)
         solver.set_phase(12)
         try:
             solver._call_pardiso(self._upper, np.zeros((self._upper.shape[0], 1)))

@@ -85,6 +85,7 @@ def _draw_edges(axes: Axes, plan: FloorPlan) -> None:
     looks = {
         "free": ("-", 1.0),
         "symmetry": ("-.", 1.4),
+        "simple": (":", 1.8),
         "pinned": ("--", 1.4),
         "clamped": ("-", 2.6),
     }

@@ -12,9 +12,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
-from trundle.criteria import ClassMap
 from trundle.report.canvas import COLOURS, new_figure
-from trundle.report.map_data import MapView, class_scale
+from trundle.report.map_data import MapView, class_ranks, class_scale
 from trundle.study.maps import MapPlan
 from trundle.study.model import Study
 from trundle.units import GAL, MICROMETRE_PER_SECOND
@@ -38,9 +37,9 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
     figure, panels = _panels(study, views)
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     for panel, view in zip(panels, views, strict=True):
-        levels = _ranks(view.classes)
+        levels = class_ranks(view.classes)
         _image(panel, study, plan, levels, view.routes, cmap=ListedColormap(colours), norm=norm)
-    shown = sorted({int(r) for view in views for r in _ranks(view.classes)})
+    shown = sorted({int(r) for view in views for r in class_ranks(view.classes)})
     figure.legend(
         handles=[
             Patch(facecolor=colours[i], edgecolor="#7F7F7F", label=names[i])
@@ -48,7 +47,7 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
         ],
         loc="outside lower center",
         ncols=min(len(shown), 6),
-        title="strictest criterion met",
+        title="strictest criterion met, vertical",
     )
     return figure
 
@@ -125,12 +124,6 @@ def _level_figure(study: Study, views: list[MapView], levels: list[Array], label
         bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
         bar.ax.minorticks_off()
     return figure
-
-
-def _ranks(classes: ClassMap) -> Array:
-    """Return 0 for none, then the criteria from the widest to the strictest."""
-    order = {-1: 0, **{index: i + 1 for i, index in enumerate(classes.order())}}
-    return np.array([order[int(i)] for i in classes.classes()])
 
 
 def _panels(study: Study, views: list[MapView]) -> tuple[Figure, list[Axes]]:

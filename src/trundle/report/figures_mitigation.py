@@ -17,29 +17,27 @@ from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
 from trundle.study.sweep import Outcome, Sweep
 from trundle.units import KMH
 
-__all__ = ["NONE", "class_matrix_figure", "speed_figure", "strictest"]
+__all__ = ["NONE", "UNKNOWN", "class_matrix_figure", "speed_figure", "strictest"]
 
-NONE = "none"
-"""What stands where no criterion is met."""
+NONE, UNKNOWN = "none", "not assessed"
+"""What stands where no criterion is met, and where it is not known whether one is."""
 
 _FEW = 4  # changes, that have a panel each in a matrix and a line each in curves
 _STYLES = ("-", "--", ":", "-.")
 
 
 def strictest(outcome: Outcome, point: str) -> str:
-    """Return the title of the strictest velocity criterion that is passed at a point, or none.
-
-    With a star if the road's waves end below the highest band that it was assessed in.
-    """
-    passed = [
+    """Return the title of the strictest velocity criterion that is passed at a point, if any."""
+    some = [
         v
         for v in outcome.verdicts
-        if v.point == point and v.status == "pass" and v.criterion.quantity == "band_rms_velocity"
+        if v.point == point and v.criterion.quantity == "band_rms_velocity"
     ]
+    passed = [v for v in some if v.status == "pass"]
     best = min(passed, key=lambda v: float(v.criterion.limits.min()), default=None)
-    if best is None:
-        return NONE
-    return best.criterion.title if outcome.excites(best) else f"{best.criterion.title}*"
+    if best is not None:
+        return best.criterion.title
+    return UNKNOWN if any(v.status == "not assessed" for v in some) else NONE
 
 
 def class_matrix_figure(sweep: Sweep, point: str) -> Figure:
@@ -87,7 +85,7 @@ def _matrix(
     """Draw criteria met as colours with their names; ticks are those of rows and columns."""
     colours = ListedColormap(colormaps["cividis"](np.linspace(0.0, 1.0, len(names))))
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
-    ranks = np.array([[names.index(title.rstrip("*")) for title in row] for row in rows])
+    ranks = np.array([[names.index(title) for title in row] for row in rows])
     panel.imshow(ranks, cmap=colours, norm=norm, aspect="auto", origin="lower")
     for (i, j), rank in np.ndenumerate(ranks):
         ink = "white" if rank < 0.5 * len(names) else "black"
@@ -156,17 +154,15 @@ def speed_figure(sweep: Sweep, point: str, criterion: str) -> Figure:
 
 def _short(title: str) -> str:
     """Return a title that a cell holds."""
-    plain = title.rstrip("*")
-    star = title[len(plain) :]
-    return title if len(plain) <= 8 else f"{plain[:7].rstrip()}.{star}"
+    return title if len(title) <= 8 else f"{title[:7].rstrip()}."
 
 
 def _names(sweep: Sweep) -> list[str]:
-    """Return none, then the velocity criteria from the widest to the strictest."""
+    """Return none, not assessed, then the velocity criteria from the widest on."""
     first: Outcome = sweep.outcomes[0]
     curves = {
         v.criterion.title: float(v.criterion.limits.min())
         for v in first.verdicts
         if v.criterion.quantity == "band_rms_velocity"
     }
-    return [NONE, *sorted(curves, key=lambda title: -curves[title])]  # widest first
+    return [NONE, UNKNOWN, *sorted(curves, key=lambda title: -curves[title])]  # widest first

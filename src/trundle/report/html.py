@@ -5,9 +5,12 @@ from __future__ import annotations
 import base64
 from pathlib import Path
 
+import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
+from trundle.criteria import Verdict
 from trundle.report.canvas import Picture
+from trundle.signals import nominal_frequency
 
 __all__ = ["embedded", "template"]
 
@@ -23,6 +26,8 @@ def template(name: str) -> Template:
     )
     environment.filters["sig"] = lambda value, digits=3: f"{value:.{digits}g}"
     environment.filters["rank"] = _rank
+    environment.filters["between"] = _between
+    environment.filters["hertz"] = _hertz
     return environment.get_template(name)
 
 
@@ -35,6 +40,18 @@ def embedded(picture: Picture, figures: Path) -> dict[str, str]:
         "caption": picture.caption,
         "data": base64.b64encode(png).decode("ascii"),
     }
+
+
+def _between(verdict: Verdict) -> str:
+    """Write a margin with its interval."""
+    low, high = verdict.interval
+    known = np.isfinite(low) and np.isfinite(high)
+    return f"{verdict.margin:.3g}" + (f" ({low:.3g}-{high:.3g})" if known else "")
+
+
+def _hertz(f: float) -> str:
+    """Write a mid-band frequency by its name; nothing for a single number."""
+    return f"{nominal_frequency(f):g}" if np.isfinite(f) else ""
 
 
 def _rank(value: float) -> str:

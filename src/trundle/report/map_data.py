@@ -6,18 +6,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from trundle._typing import Array
 from trundle.criteria import ClassMap, envelope_of
+from trundle.signals import nominal_frequency
 from trundle.study.map_datasets import single_maps
 from trundle.study.maps import StudyMap
 from trundle.study.run import StudyResult
 from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 
-__all__ = ["MapView", "class_scale", "map_payload", "map_views"]
+__all__ = ["MapView", "class_ranks", "class_scale", "map_payload", "map_views"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,10 +92,17 @@ def _worst(result: StudyResult, maps: list[StudyMap], title: str) -> MapView:
 
 
 def class_scale(classes: ClassMap) -> tuple[list[str], list[str]]:
-    """Return names and colours from none to the strictest criterion; dark where little stands."""
-    names = ["none", *(classes.criteria[i].title for i in classes.order())]
-    shades = colormaps["cividis"](np.linspace(0.0, 1.0, len(names)))
-    return names, [to_hex(shade) for shade in shades]
+    """Return names and colours: grey where nothing is assessed, dark where little may stand."""
+    names = [classes.criteria[i].title for i in classes.order()]
+    shades = colormaps["cividis"](np.linspace(0.0, 1.0, len(names) + 1))
+    none, *others = (to_hex(shade) for shade in shades)
+    return ["not assessed", "none", *names], ["#d9d9d9", none, *others]
+
+
+def class_ranks(classes: ClassMap) -> Int[Array, " places"]:
+    """Return 0 where nothing is assessed, 1 for none, then criteria from the widest on."""
+    order = {-2: 0, -1: 1, **{index: rank + 2 for rank, index in enumerate(classes.order())}}
+    return np.array([order[int(k)] for k in classes.classes()])
 
 
 def map_payload(result: StudyResult) -> dict[str, Any]:
@@ -128,8 +136,7 @@ def _view(result: StudyResult, view: MapView, shape: tuple[int, int]) -> dict[st
     assert plan is not None  # the caller has looked
     classes = view.classes
     i = classes.index(plan.criterion)
-    order = {-1: 0, **{index: rank + 1 for rank, index in enumerate(classes.order())}}
-    ranks = np.array([order[int(k)] for k in classes.classes()])
+    ranks = class_ranks(classes)
     return {
         "title": view.title,
         "routes": list(view.routes),
@@ -138,7 +145,7 @@ def _view(result: StudyResult, view: MapView, shape: tuple[int, int]) -> dict[st
             _readings(values, shape)
             for values in (
                 classes.margin[i],
-                classes.governing_band[i],
+                _named(classes.governing_band[i]),
                 100.0 * classes.share_exceeding[i],
                 view.rms_velocity / MICROMETRE_PER_SECOND,
                 view.peak_acceleration / GAL,
@@ -151,6 +158,11 @@ def _readings(values: np.ndarray, shape: tuple[int, int]) -> list[list[float | N
     """Return three digits of every value by row; nothing for what is not a number."""
     short = [float(f"{v:.3g}") if np.isfinite(v) else None for v in values]
     return [short[start : start + shape[1]] for start in range(0, len(short), shape[1])]
+
+
+def _named(frequencies: np.ndarray) -> np.ndarray:
+    """Return mid-band frequencies by their names."""
+    return np.array([nominal_frequency(f) if np.isfinite(f) else np.nan for f in frequencies])
 
 
 def _short(values: np.ndarray) -> list[float]:

@@ -18,10 +18,10 @@ from trundle.units import KMH
 __all__ = ["PARTLY", "mitigation_rows", "write_mitigation_report"]
 
 PARTLY = (
-    "* the waves of the road end below the highest bands of the criterion, which is met there for "
-    "want of excitation"
+    "not assessed: the road's waves end below the criterion's bands at this speed (raise n_max), "
+    "or step and modes do not reach them; margins are those of the bands computed and excited"
 )
-"""What the star behind a criterion says."""
+"""What is not assessed, and why."""
 
 
 def mitigation_rows(sweep: Sweep) -> list[dict[str, Any]]:

@@ -26,6 +26,8 @@ from trundle.report.tables import (
     bound_rows,
     comparison_rows,
     exact_rows,
+    road_words,
+    roughest_words,
     summary_rows,
     truncation_rows,
     verdict_matrix,
@@ -33,7 +35,8 @@ from trundle.report.tables import (
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import self_weight_deflection
 from trundle.study.cells import CellKey
-from trundle.study.run import StudyResult, positions_at
+from trundle.study.maps import MapKey
+from trundle.study.run import StudyResult, positions_at, wheels_at
 from trundle.study.store import provenance
 from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 
@@ -275,6 +278,7 @@ def _render(result: StudyResult, pictures: list[dict[str, str]]) -> str:
         map=map_payload(result),
         plotly=plotly_script() if result.maps else "",
         columns=columns,
+        roads=road_words(study),
         matrix=matrix,
         verdict=_headline(result),
         warnings=result.warnings(),
@@ -315,9 +319,41 @@ def _headline(result: StudyResult) -> list[dict[str, Any]]:
                     "best": best,
                     "first": first,
                     "where": _where(result, key, first or best),
+                    "worst": _worst_place(result, key, first or best),
+                    "road_passed": roughest_words(result.study, key.road, best) if best else "",
+                    "reasons": _reasons(verdicts, point),
                 }
             )
     return lines
+
+
+def _reasons(verdicts: tuple[Verdict, ...], point: str) -> str:
+    """Say why velocity criteria at a point are not assessed, if some are not."""
+    found = (
+        reason
+        for v in verdicts
+        if v.point == point
+        and v.status == "not assessed"
+        and v.criterion.quantity == "band_rms_velocity"
+        for reason in v.reasons
+    )
+    return "; ".join(dict.fromkeys(found))
+
+
+def _worst_place(result: StudyResult, key: CellKey, verdict: Verdict | None) -> str:
+    """Say where on the map the margin to a criterion is smallest."""
+    mapped = result.maps.get(MapKey(key.case, key.road))
+    if mapped is None or verdict is None:
+        return ""
+    names = [c.name for c in mapped.classes.criteria]
+    if verdict.criterion.name not in names:
+        return ""
+    margin = mapped.classes.margin[names.index(verdict.criterion.name)]
+    if np.isnan(margin).all():
+        return ""
+    worst = int(np.nanargmin(margin))
+    x, y = mapped.classes.places[worst]
+    return f"{margin[worst]:.3g} at ({x:.1f}, {y:.1f}) m"
 
 
 def _where(result: StudyResult, key: CellKey, verdict: Verdict | None) -> str:
@@ -325,8 +361,13 @@ def _where(result: StudyResult, key: CellKey, verdict: Verdict | None) -> str:
     if verdict is None or not np.isfinite(verdict.time):
         return ""
     places = positions_at(result, key, verdict.time)
+    on_floor = wheels_at(result, key, verdict.time)
     there = [
-        f"{name} has left" if place is None else f"{name} at ({place[0]:.1f}, {place[1]:.1f}) m"
+        f"{name} at ({place[0]:.1f}, {place[1]:.1f}) m"
+        if place is not None
+        else f"{name} is off the floor"
+        if not on_floor[name]
+        else f"{name}'s front axle is off, {on_floor[name]} wheels are on the floor"
         for name, place in places.items()
     ]
     return f"{verdict.time:.1f} s, {', '.join(there)}"

@@ -9,8 +9,9 @@ import numpy as np
 from trundle.criteria import Verdict
 from trundle.dynamics import Modal
 from trundle.response import percentile_interval, percentile_rank, upper_bounds
+from trundle.road import CLASS_NAMES, class_limits
 from trundle.study.cells import CellKey
-from trundle.study.model import PrintedBound
+from trundle.study.model import PrintedBound, Study
 from trundle.study.run import StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
@@ -23,6 +24,8 @@ __all__ = [
     "bound_rows",
     "comparison_rows",
     "exact_rows",
+    "road_words",
+    "roughest_words",
     "summary_rows",
     "truncation_rows",
     "verdict_matrix",
@@ -237,7 +240,12 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
     printed accelerations are sums, the printed velocities nearer to the other.
     """
     study = result.study
-    singles = [case.name for case in study.cases if len(case.routes) == 1]
+    printed_cases = {row.case for row in study.printed}
+    singles = [
+        case.name
+        for case in study.cases
+        if len(case.routes) == 1 and (case.name in printed_cases or not printed_cases)
+    ]
     many = [case.name for case in study.cases if len(case.routes) > 1]
     rows = []
     for printed in study.printed_bounds:
@@ -274,6 +282,26 @@ def _medians(result: StudyResult, case: str, printed: PrintedBound) -> tuple[flo
     cell = result.cells[CellKey(case, printed.road, printed.method)]
     peak, rms = cell.peak_acceleration[:, 0], cell.rms_velocity[:, 0]
     return float(np.median(peak)), float(np.median(rms))
+
+
+def road_words(study: Study) -> list[str]:
+    """Return what each road is: its label, level and Gd(n0)."""
+    return [
+        f"{label}: {road.level.replace('_', ' ')} of class {road.name}, Gd(n0) = "
+        f"{1e6 * road.roughness:.3g}e-6 m3"
+        for label, road in study.roads.items()
+    ]
+
+
+def roughest_words(study: Study, road: str, verdict: Verdict) -> str:
+    """Return up to what road a criterion is passed, as far as the margin tells."""
+    if np.isnan(verdict.roughest) or verdict.criterion.quantity != "band_rms_velocity":
+        return ""
+    value = verdict.roughest * study.roads[road].roughness
+    within = [name for name in CLASS_NAMES if class_limits(name)[2] <= value]
+    name = f"all of class {within[-1]}" if within else "less than class A"
+    bound = "at least" if verdict.margin >= 1.0 else "at most"
+    return f"{bound} {1e6 * value:.3g}e-6 m3 ({name})"
 
 
 def verdict_matrix(result: StudyResult) -> tuple[list[str], list[tuple[str, list[Verdict]]]]:

@@ -5,7 +5,7 @@ from trundle.response.floor_map import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
 from trundle.response.level_warnings import few_runs_warnings, level_warnings
 from trundle.response.measured import as_if_not_faded, runs_of_record, without_short_bands
-from trundle.response.peaks import Process, peak_levels
+from trundle.response.peaks import LargestValues
 from trundle.response.reduction import (
     Reduced,
     join,
@@ -25,7 +25,7 @@ __all__ = [
     "BandSpectra",
     "ExactStatistics",
     "FloorMap",
-    "Process",
+    "LargestValues",
     "Reduced",
     "SpectrumQuantity",
     "UpperBounds",
@@ -36,7 +36,6 @@ __all__ = [
     "floor_map",
     "join",
     "level_warnings",
-    "peak_levels",
     "percentile_interval",
     "percentile_rank",
     "reduce_rougher",

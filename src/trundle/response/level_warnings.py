@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
+from trundle._typing import Array
 from trundle.errors import FitnessWarning
-from trundle.signals import Averaging, level_scatter
+from trundle.response.spectra import BandSpectra
+from trundle.signals import Averaging, level_scatter, nominal_frequency
 
 __all__ = ["few_runs_warnings", "level_warnings"]
 
-_TIME = {"max_1s": 1.0, "slow": 2.0, "fast": 0.25}  # s: that an average is worth
+_TIME = {"max_1s": 1.0, "slow": 1.0, "fast": 0.125}  # s: window or time constant
+_BANDS = 10.0 ** np.array([0.0, 0.9, 1.9])  # Hz: spoken of
+_ENVELOPE = np.sqrt(4.0 / np.pi - 1.0)  # scatter of the amplitude of a narrow band (Rayleigh)
+_MANY = 30  # runs whose scatter is itself known within about 15 %
 _LIKELY = 0.95  # of the interval of a percentile
 
 
-def level_warnings(averaging: Averaging, record_length: float) -> tuple[FitnessWarning, ...]:
+def level_warnings(
+    averaging: Averaging, record_length: float, *, levels: BandSpectra | None = None
+) -> tuple[FitnessWarning, ...]:
     """Return the doubts about levels of one passage.
 
     Parameters
@@ -22,11 +29,10 @@ def level_warnings(averaging: Averaging, record_length: float) -> tuple[FitnessW
         Averaging rule.
     record_length : float
         Length of the record [s].
-
-    Notes
-    -----
-    An exponential average is worth a linear one over twice its time constant (Bendat and Piersol,
-    Random Data, 4th ed. 2010, section 11.5.4).
+    levels : BandSpectra, optional
+        Levels of many runs, whose scatter is said; without them, or with few, that of steady
+        Gaussian noise at one time is: by rule ``slow`` a passage of a second or two scatters by up
+        to a fifth more, and the largest of a long record by as little as a quarter as much.
     """
     if averaging == "event":
         message = (
@@ -34,13 +40,33 @@ def level_warnings(averaging: Averaging, record_length: float) -> tuple[FitnessW
             "a record twice as long has levels 3 dB lower"
         )
         return (FitnessWarning(subject="averaging", message=message),)
-    time = _TIME[averaging]
-    one, eight, eighty = 100.0 * level_scatter(10.0 ** np.array([0.0, 0.9, 1.9]), time)
-    message = (
-        f"one event is one sample: averaged by rule {averaging}, a level of random motion scatters "
-        f"by about {one:.0f} % in the 1 Hz band, {eight:.0f} % at 8 Hz and {eighty:.0f} % at 80 Hz"
-    )
+    if levels is not None and len(levels.values) >= _MANY:
+        text, mid_band, scatter = "over the runs levels", levels.mid_band, _over_runs(levels)
+    else:
+        text, mid_band = "a level of random motion", _BANDS
+        # the largest of all times rides on a crest, never between two
+        scatter = np.minimum(
+            level_scatter(_BANDS, _TIME[averaging], exponential=averaging != "max_1s"), _ENVELOPE
+        )
+    found = {
+        f"{nominal_frequency(f):g} Hz": value
+        for f, value in zip(mid_band, scatter, strict=True)
+        if np.isfinite(value) and np.isclose(f, _BANDS, rtol=1e-3).any()
+    }
+    if not found:
+        return ()
+    verb = "scatter by" if text.endswith("s") else "scatters by up to about"
+    sizes = ", ".join(f"{100.0 * value:.0f} % at {name}" for name, value in found.items())
+    message = f"one event is one sample: averaged by rule {averaging}, {text} {verb} {sizes}"
     return (FitnessWarning(subject="scatter", message=message),)
+
+
+def _over_runs(levels: BandSpectra) -> Array:
+    """Return the relative standard deviation in each band, the largest of all points."""
+    mean = levels.values.mean(axis=0)
+    shown = levels.resolved & (mean > 0.0).all(axis=0)
+    spread = levels.values.std(axis=0, ddof=1) / np.where(shown, mean, 1.0)
+    return np.where(shown, spread.max(axis=0), np.nan)
 
 
 def few_runs_warnings(n_runs: int, percentile: float) -> tuple[FitnessWarning, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from itertools import chain
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -12,9 +13,9 @@ from scipy import signal
 
 from trundle._threads import n_threads
 from trundle._typing import Array
-from trundle.response.peaks import Process, peak_levels
+from trundle.response.peaks import DrawnHistories, LargestValues
 from trundle.signals import band_edges, band_filter, mid_band_frequencies, usable_bands
-from trundle.simulate import Harmonics, MeanResponse
+from trundle.simulate import Harmonics
 
 __all__ = ["ExactStatistics", "exact_statistics"]
 
@@ -34,8 +35,8 @@ class ExactStatistics:
         ``acceleration`` (n_steps, n_points) and ``contact_forces`` (n_steps, n_contacts).
     variance : dict of str to ndarray
         Variance at each time; same keys and shapes.
-    processes : dict of str to Process
-        What decides the peaks of ``velocity`` and ``acceleration``.
+    largest : dict of str to LargestValues
+        Where drawn histories of ``velocity`` and ``acceleration`` are largest.
     mid_band : ndarray of float, shape (n_bands,)
         Exact mid-band frequencies [Hz].
     resolved : ndarray of bool, shape (n_bands,)
@@ -54,7 +55,7 @@ class ExactStatistics:
     time: Float[Array, " steps"]
     mean: dict[str, Array]
     variance: dict[str, Array]
-    processes: dict[str, Process]
+    largest: dict[str, LargestValues]
     mid_band: Float[Array, " bands"]
     resolved: Bool[Array, " bands"]
     band_mean: Float[Array, "resolved points steps"]
@@ -89,7 +90,9 @@ class ExactStatistics:
     def peak(self, share: float, quantity: str = "acceleration") -> Float[Array, " points"]:
         """Return the largest absolute value that a share (0 to 100) of all roads stays below.
 
-        An approximation, unlike the rest: see `peak_levels`.
+        Sampled, unlike the rest: from up to 1000 histories drawn from the answers to the waves,
+        always the same ones. At 1000 draws a peak scatters by about 1 % at 50 % and 2 % at 95 %,
+        at the 200 of records that fill the memory by 2 and 5 %.
         """
         return self.peaks([share], quantity)[0]
 
@@ -97,9 +100,7 @@ class ExactStatistics:
         self, shares: Sequence[float], quantity: str = "acceleration"
     ) -> Float[Array, "shares points"]:
         """Return `peak` for several shares at once."""
-        process = self.processes[quantity]
-        levels = [peak_levels(process.at(i), shares) for i in range(len(self.point_names))]
-        return np.transpose(levels)
+        return self.largest[quantity].levels(shares)
 
     def rougher(self, factor: float) -> ExactStatistics:
         """Return the statistics for a road whose elevation is so many times larger."""
@@ -107,7 +108,7 @@ class ExactStatistics:
         return replace(
             self,
             variance={name: square * value for name, value in self.variance.items()},
-            processes={name: value.rougher(factor) for name, value in self.processes.items()},
+            largest={name: value.rougher(factor) for name, value in self.largest.items()},
             band_variance=square * self.band_variance,
         )
 
@@ -136,7 +137,7 @@ def exact_statistics(answers: Iterable[Harmonics], *, f_max: float = np.inf) -> 
     answers : iterable of Harmonics
         Answers to the waves, some at a time.
     f_max : float
-        Highest frequency that the computation contains [Hz].
+        Highest frequency up to which bands are wanted [Hz]; at most what the answers show.
 
     Returns
     -------
@@ -153,13 +154,13 @@ def exact_statistics(answers: Iterable[Harmonics], *, f_max: float = np.inf) -> 
     mean = first.mean
     fs = 1.0 / float(mean.time[1] - mean.time[0])
     mid_band = mid_band_frequencies()
-    resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= f_max)
+    resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= min(f_max, first.f_max))
     filters = [band_filter(f, fs) for f in mid_band[resolved]]
     sums = _Sums()
-    _add(sums, first, filters)
-    del first
-    for answer in parts:
+    drawn = DrawnHistories(mean=mean)
+    for answer in chain([first], parts):
         _add(sums, answer, filters)
+        drawn.add(answer)
     still = np.moveaxis(mean.velocity, 0, -1)
     shape = (len(filters), *still.shape)
     names = ("displacement", "velocity", "acceleration", "contact_forces")
@@ -167,7 +168,7 @@ def exact_statistics(answers: Iterable[Harmonics], *, f_max: float = np.inf) -> 
         time=mean.time,
         mean={name: getattr(mean, name) for name in names},
         variance={name: sums.fine[name] for name in names},
-        processes={name: _process(sums, mean, name) for name in ("velocity", "acceleration")},
+        largest=drawn.largest(),
         mid_band=mid_band,
         resolved=resolved,
         band_mean=np.reshape([signal.sosfilt(sos, still, axis=-1) for sos in filters], shape),
@@ -185,13 +186,6 @@ def _add(sums: _Sums, answer: Harmonics, filters: list[Array]) -> None:
         square = np.abs(getattr(answer, name)) ** 2
         sums.add(name, np.sum(power * square, axis=0))
         sums.add(f"coarse {name}", np.sum(coarse * square, axis=0))
-    for name in ("velocity", "acceleration"):
-        value = getattr(answer, name)
-        rate = _derivative(value, answer.phase, answer.time)
-        both = np.conj(value) * rate
-        sums.add(f"rate {name}", np.sum(power * np.abs(rate) ** 2, axis=0))
-        sums.add(f"cross {name}", np.sum(power * both.real, axis=0))
-        sums.add(f"turn {name}", np.sum(power * both.imag, axis=0))
     velocity = np.moveaxis(answer.velocity, 1, -1)
     with ThreadPoolExecutor(n_threads()) as pool:
         energy = list(pool.map(lambda sos: _energy(sos, velocity, answer.power), filters))
@@ -203,25 +197,6 @@ def _energy(sos: Array, velocity: Array, power: Array) -> Array:
     """Return the variance that waves give a band: cosine and sine are filtered apart."""
     parts = (signal.sosfilt(sos, part, axis=-1) for part in (np.real(velocity), np.imag(velocity)))
     return np.sum([np.einsum("w,wps->ps", power, part**2) for part in parts], axis=0)
-
-
-def _derivative(value: Array, phase: Array, time: Array) -> Array:
-    """Differentiate in time: the wave's own turning exactly, the slow rest by differences."""
-    turn = np.exp(-1j * phase)[:, :, None]
-    slow = value * turn
-    speed = np.gradient(phase, time, axis=1)[:, :, None]
-    return (np.gradient(slow, time, axis=1) + 1j * speed * slow) / turn
-
-
-def _process(sums: _Sums, mean: MeanResponse, name: str) -> Process:
-    return Process(
-        time=mean.time,
-        mean=getattr(mean, name),
-        variance=sums.fine[name],
-        rate_variance=sums.fine[f"rate {name}"],
-        covariance=sums.fine[f"cross {name}"],
-        turning=sums.fine[f"turn {name}"],
-    )
 
 
 def _quadrature_error(sums: _Sums) -> float:

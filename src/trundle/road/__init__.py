@@ -9,7 +9,8 @@ from trundle.road.iso8608 import (
     RoughnessLevel,
     class_limits,
 )
-from trundle.road.profile import Profile, ProfileReader
+from trundle.road.plausibility import profile_doubts
+from trundle.road.profile import Beyond, Profile, ProfileReader
 from trundle.road.survey import RoughnessFit, classify, fit_roughness, roughness_index
 from trundle.road.synthesis import RoughnessBand, synthesise, wave_power
 from trundle.road.temporal import temporal_psd, temporal_psd_two_sided
@@ -20,6 +21,7 @@ __all__ = [
     "FITTED_RANGE",
     "REFERENCE_ANGULAR_FREQUENCY",
     "REFERENCE_FREQUENCY",
+    "Beyond",
     "Profile",
     "ProfileReader",
     "RoadClass",
@@ -29,6 +31,7 @@ __all__ = [
     "class_limits",
     "classify",
     "fit_roughness",
+    "profile_doubts",
     "roughness_index",
     "synthesise",
     "synthesise_tracks",

@@ -10,13 +10,19 @@ from scipy import linalg, signal
 
 from trundle._checks import positive
 from trundle._typing import Array
-from trundle.errors import InputError
+from trundle.errors import FitnessWarning, InputError
 from trundle.road.iso8608 import (
     CLASS_NAMES,
     FITTED_RANGE,
     REFERENCE_FREQUENCY,
     RoadClass,
     class_limits,
+)
+from trundle.road.plausibility import (
+    check_index,
+    check_roughness,
+    profile_doubts,
+    roughness_doubts,
 )
 from trundle.road.profile import Profile
 from trundle.signals import welch_psd
@@ -47,6 +53,8 @@ class RoughnessFit:
         Gd(n0) of the line with w = 2, by which ISO 8608 classifies [m3].
     n_min, n_max : float
         Spatial frequencies that the line was fitted over [cycle/m].
+    doubts : tuple of FitnessWarning
+        Doubts about the profile's units.
     """
 
     roughness: float
@@ -54,6 +62,7 @@ class RoughnessFit:
     roughness_at_two: float
     n_min: float
     n_max: float
+    doubts: tuple[FitnessWarning, ...] = ()
 
 
 def fit_roughness(
@@ -87,6 +96,7 @@ def fit_roughness(
         raise InputError(
             f"a profile of {profile.length:g} m with {len(profile.station)} points holds less "
             f"than two octaves between {n_min:g} and {n_max:g} cycle/m: give a longer one"
+            f"{_said(profile)}"
         )
     edges = np.geomspace(low, high, n_octaves + 1)
     which = np.digitize(n, edges) - 1
@@ -95,17 +105,25 @@ def fit_roughness(
     level = np.log([flat[which == i].mean() for i in range(n_octaves)])
     centre = np.log(np.sqrt(edges[:-1] * edges[1:]) / REFERENCE_FREQUENCY)
     slope, height = np.polyfit(centre, level, 1)
+    at_two = float(np.exp(level.mean()))
     return RoughnessFit(
         roughness=float(np.exp(height)),
         waviness=float(2.0 - slope),
-        roughness_at_two=float(np.exp(level.mean())),
+        roughness_at_two=at_two,
         n_min=float(low),
         n_max=float(high),
+        doubts=(*profile_doubts(profile), *roughness_doubts(at_two)),
     )
 
 
 def classify(profile: Profile) -> RoadClass:
     """Return the class of ISO 8608 whose limits hold a profile's Gd(n0) at w = 2.
+
+    Raises
+    ------
+    InputError
+        A profile too short, or with a Gd(n0) that no road has: most often its elevations are
+        not in metres.
 
     Examples
     --------
@@ -115,6 +133,7 @@ def classify(profile: Profile) -> RoadClass:
     'class C (geometric mean)'
     """
     roughness = fit_roughness(profile).roughness_at_two
+    check_roughness(roughness)
     upper = [class_limits(name)[2] for name in CLASS_NAMES]
     return RoadClass(CLASS_NAMES[min(int(np.searchsorted(upper, roughness)), len(upper) - 1)])
 
@@ -138,6 +157,12 @@ def roughness_index(
     ndarray of float, shape (n_segments,)
         Mean rectified slope of the suspension [m/m]; times 1000 it is in mm/m.
 
+    Raises
+    ------
+    InputError
+        A profile shorter than a segment, or with an index that no road has: most often its
+        elevations are not in metres.
+
     Notes
     -----
     Golden car at 80 km/h in one continuous run, started with the mean slope of the first
@@ -157,6 +182,7 @@ def roughness_index(
     if n_segments < 1:
         raise InputError(
             f"a profile of {profile.length:g} m is shorter than a segment of {segment:g} m"
+            f"{_said(profile)}"
         )
     station = profile.station[0] + spacing * np.arange(n_segments * per_segment + 1)
     ahead = np.minimum(station + _IRI_PATCH, profile.station[-1])
@@ -166,7 +192,14 @@ def roughness_index(
         slope[-1] = slope[-2]
     first = float(np.mean(slope[: max(1, round(_IRI_LEAD / spacing))]))
     rectified = np.abs(_suspension_slope(slope, spacing / _IRI_SPEED, first))
-    return rectified.reshape(n_segments, per_segment).mean(axis=1)
+    index = rectified.reshape(n_segments, per_segment).mean(axis=1)
+    check_index(float(index.mean()))
+    return index
+
+
+def _said(profile: Profile) -> str:
+    """Return the doubts about a profile's units as the end of a message."""
+    return "".join(f"; {doubt.message}" for doubt in profile_doubts(profile))
 
 
 def _suspension_slope(slope: Array, dt: float, first: float) -> Array:

@@ -1,11 +1,12 @@
 """Say where vehicles drive, and connect a moving wheel to the floor's dofs."""
 
 from trundle.route.contact import ContactRows, ContactShape, Hat, Hermite, contact_rows
-from trundle.route.entry import DriveIn, Entry, Ramp, StaticStart
+from trundle.route.entry import Abrupt, DriveIn, Entry, Ramp, StaticStart
 from trundle.route.locate import Deck, deck_of
 from trundle.route.path import ConstantSpeed, Route, SpeedLaw, SteadyAcceleration
 
 __all__ = [
+    "Abrupt",
     "ConstantSpeed",
     "ContactRows",
     "ContactShape",

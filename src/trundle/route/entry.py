@@ -11,7 +11,7 @@ from jaxtyping import Float
 from trundle._checks import positive, set_frozen
 from trundle._typing import Array
 
-__all__ = ["DriveIn", "Entry", "Ramp", "StaticStart"]
+__all__ = ["Abrupt", "DriveIn", "Entry", "Ramp", "StaticStart"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,5 +126,32 @@ class StaticStart:
         return "static equilibrium on the floor at the start"
 
 
-Entry: TypeAlias = Ramp | DriveIn | StaticStart
+@dataclass(frozen=True, kw_only=True)
+class Abrupt:
+    """Put each wheel's whole force on the floor at the edge, and take it off at the far one.
+
+    Nothing comes onto a floor in this way: its response holds a free vibration from steps of
+    the static axle loads, which does not grow with the road's roughness. It is there to show
+    what such a reading of a moving load does. In a computation a step rises over one time step,
+    so that its response depends on the time step.
+    """
+
+    def lead(self, vehicle_length: float) -> float:
+        """Return where the front axle stands at time 0 [m]: at the edge."""
+        del vehicle_length
+        return 0.0
+
+    def share(
+        self, station: Float[Array, ...], route_length: float
+    ) -> tuple[Float[Array, ...], Float[Array, ...]]:
+        """Return the share of the force that the floor carries, and its slope [1/m]."""
+        inside = (station >= 0.0) & (station <= route_length)
+        return inside.astype(float), np.zeros_like(station)
+
+    def __str__(self) -> str:
+        """Describe the entry for a report."""
+        return "abrupt: each axle's whole load at once"
+
+
+Entry: TypeAlias = Ramp | DriveIn | StaticStart | Abrupt
 """The ways onto a floor."""

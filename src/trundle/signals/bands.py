@@ -13,6 +13,7 @@ from trundle._typing import Array
 from trundle.errors import InputError
 
 __all__ = [
+    "FILTER_ORDER",
     "HIGHEST_BAND",
     "LOWEST_BAND",
     "band_delay",
@@ -30,7 +31,7 @@ LOWEST_BAND, HIGHEST_BAND = 0, 19
 
 _BENT = 0.08  # of the sampling frequency: above, the bilinear transform bends a band's skirts
 _FLOOR = 0.1  # of a filter's passband: what passes less is fitted less closely
-_ORDER = 4  # meets class 1 of IEC 61260-1 from 1 to 80 Hz at 200 Hz and more; 3 does not
+FILTER_ORDER = 4  # meets class 1 of IEC 61260-1 from 1 to 80 Hz at 200 Hz and more; 3 does not
 _SAMPLES = 2.5  # sampling frequency over the highest mid-band frequency
 _NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 
@@ -89,7 +90,7 @@ def band_filter(mid_band: float, sampling_frequency: float) -> Float[Array, "sec
 def _sections(mid_band: float, fs: float) -> Float[Array, "sections 6"]:
     edges = band_edges(np.array([mid_band]))[0]
     if mid_band <= _BENT * fs:
-        return signal.butter(_ORDER, edges, btype="bandpass", fs=fs, output="sos")
+        return signal.butter(FILTER_ORDER, edges, btype="bandpass", fs=fs, output="sos")
     return _like_analogue(edges, fs)
 
 
@@ -103,15 +104,15 @@ def _like_analogue(edges: Float[Array, " 2"], fs: float) -> Float[Array, "sectio
     a sample or two that fits best: within 0.5 % of its level for motion that falls or rises by any
     power of frequency up to the fourth.
     """
-    b, a = signal.butter(_ORDER, 2.0 * np.pi * edges / fs, btype="bandpass", analog=True)
+    b, a = signal.butter(FILTER_ORDER, 2.0 * np.pi * edges / fs, btype="bandpass", analog=True)
     omega = 2.0 * np.pi * np.linspace(0.02, 0.495, 400)  # times the sampling frequency
     wanted = np.asarray(signal.freqs(b, a, omega)[1])
     digital, back = np.exp(np.roots(a)), np.exp(-1j * omega)[:, None]
-    free = (1.0 - back) ** _ORDER / np.prod(1.0 - back * digital, axis=1, keepdims=True)
+    free = (1.0 - back) ** FILTER_ORDER / np.prod(1.0 - back * digital, axis=1, keepdims=True)
     weight = 1.0 / (np.abs(wanted)[:, None] + _FLOOR)
-    columns = free * back ** np.arange(_ORDER + 1) * weight
+    columns = free * back ** np.arange(FILTER_ORDER + 1) * weight
     both = np.concatenate([columns.real, columns.imag])
-    best, least = np.zeros(_ORDER + 1), np.inf
+    best, least = np.zeros(FILTER_ORDER + 1), np.inf
     for delay in np.linspace(-1.0, 2.0, 61):
         target = (wanted * np.exp(-1j * omega * delay))[:, None] * weight
         right = np.concatenate([target.real, target.imag])[:, 0]
@@ -119,7 +120,7 @@ def _like_analogue(edges: Float[Array, " 2"], fs: float) -> Float[Array, "sectio
         left_over = float(np.linalg.norm(both @ numerator - right))
         if left_over < least:
             best, least = numerator, left_over
-    return signal.zpk2sos(np.concatenate([np.ones(_ORDER), np.roots(best)]), digital, best[0])
+    return signal.zpk2sos(np.concatenate([np.ones(FILTER_ORDER), np.roots(best)]), digital, best[0])
 
 
 def filter_bands(

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from jaxtyping import Float
-from scipy import signal
+from scipy import signal, special
 
 from trundle._checks import one_of, positive
 from trundle._threads import n_threads
 from trundle._typing import Array
-from trundle.signals.bands import band_delay, band_edges, band_filter, filter_zero_phase
+from trundle.signals.bands import (
+    FILTER_ORDER,
+    band_delay,
+    band_edges,
+    band_filter,
+    filter_zero_phase,
+)
 
 __all__ = [
     "Averaging",
@@ -181,19 +188,56 @@ def band_peaks(
 
 
 def level_scatter(
-    mid_band: Float[Array, " bands"], averaging_time: float
+    mid_band: Float[Array, " bands"], averaging_time: float, *, exponential: bool = False
 ) -> Float[Array, " bands"]:
-    """Return the relative standard error of a band's RMS over a time, for Gaussian noise.
+    """Return the relative standard deviation of a band's RMS over one time, for Gaussian noise.
 
-    ``1 / (2 sqrt(B T))``: about 100 % in the 1 Hz band over 1 s, 12 % in that of 80 Hz.
+    Parameters
+    ----------
+    mid_band : ndarray of float, shape (n_bands,)
+        Exact mid-band frequencies [Hz].
+    averaging_time : float
+        Length of the window [s], or time constant of an exponential average.
+    exponential : bool
+        Average with a weight that fades with that time constant.
+
+    Notes
+    -----
+    The variance of the energy is the integral of the squared autocorrelation ``rho`` of what the
+    filter passes: ``cv^2 = (4 / T) int_0^T (1 - t / T) rho^2 dt``, or for an exponential average
+    ``(2 / T) int_0^inf exp(-t / T) rho^2 dt``. The RMS is taken for a chi variable of ``2 / cv^2``
+    degrees of freedom. Over 1 s it scatters by 51 % at 1 Hz and 11 % at 80 Hz; the common
+    ``1 / (2 sqrt(B T))`` holds for many degrees of freedom alone. Within 6 % of sampled noise.
 
     References
     ----------
     J. S. Bendat, A. G. Piersol, Random Data, 4th ed. (2010), section 8.2.2.
     """
-    edges = band_edges(mid_band)
-    bandwidth = edges[:, 1] - edges[:, 0]
-    return 0.5 / np.sqrt(bandwidth * positive("averaging_time", averaging_time))
+    periods = np.asarray(mid_band, dtype=float) * positive("averaging_time", averaging_time)
+    lag, rho = _autocorrelation()
+    found = [_energy_variance(lag, rho, float(n), exponential=exponential) for n in periods]
+    freedom = 2.0 / np.array(found)
+    log_mean = special.gammaln(0.5 * freedom + 0.5) - special.gammaln(0.5 * freedom)
+    return np.sqrt(np.maximum(0.5 * freedom * np.exp(-2.0 * log_mean) - 1.0, 0.0))
+
+
+def _energy_variance(lag: Array, rho: Array, periods: float, *, exponential: bool) -> float:
+    """Return the relative variance of the energy over so many periods of a band."""
+    if exponential:
+        return 2.0 / periods * float(np.trapezoid(np.exp(-lag / periods) * rho**2, lag))
+    part = np.append(lag[lag < periods], min(periods, lag[-1]))
+    square = np.interp(part, lag, rho) ** 2
+    return 4.0 / periods * float(np.trapezoid((1.0 - part / periods) * square, part))
+
+
+@lru_cache(maxsize=1)
+def _autocorrelation() -> tuple[Array, Array]:
+    """Return lags in periods, and the autocorrelation of noise in a one-third octave."""
+    x = np.geomspace(0.4, 2.5, 4001)  # times the mid-band frequency
+    edges = band_edges(np.array([1.0]))[0]
+    power = x / (1.0 + ((x - 1.0 / x) / (edges[1] - edges[0])) ** (2 * FILTER_ORDER))
+    lag = np.arange(0.0, 16.0, 0.02)
+    return lag, np.cos(2.0 * np.pi * np.outer(lag, x)) @ power / power.sum()
 
 
 def _filtered(samples: Array, sampling_frequency: float, f: float, *, zero_phase: bool) -> Array:

@@ -2,6 +2,7 @@
 
 from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
 from trundle.simulate._residual import StaticFlexibility
+from trundle.simulate.coverage import Coverage, coverage_of
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.ensemble import (
     batches,
@@ -26,6 +27,7 @@ from trundle.simulate.truncation import TruncationChange, truncation_change
 
 __all__ = [
     "Coupled",
+    "Coverage",
     "Crossing",
     "Decoupled",
     "Harmonics",
@@ -46,6 +48,7 @@ __all__ = [
     "batches",
     "contact_force_histories",
     "contact_forces",
+    "coverage_of",
     "ensemble",
     "harmonics",
     "lay_out",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -13,7 +13,8 @@ from jaxtyping import Float
 from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.road import Profile, ProfileReader, synthesise_tracks
+from trundle.road import Profile, ProfileReader, RoadClass, synthesise_tracks
+from trundle.simulate._given_road import given_road
 from trundle.simulate._schedule import Timeline, columns_of, contact_springs
 from trundle.simulate.crossing import Crossing
 
@@ -65,10 +66,10 @@ def roads_under_wheels(
         first[columns, here] = elevation[:, 0].T
     for crossing, columns in columns_of(crossings):
         if smooth and isinstance(crossing.road, Profile):
-            z, slope = crossing.road.at(timeline.station[:, columns])
-            felt = stiffness[columns] * z + rolling[:, columns] * slope
+            given = given_road(crossing, timeline, columns)
+            felt = stiffness[columns] * given.elevation + rolling[:, columns] * given.slope
             push[:, columns, len(runs) :] = felt[:, :, None]
-            first[columns, len(runs) :] = z[0][:, None]
+            first[columns, len(runs) :] = given.elevation[0][:, None]
     return RoadUnderWheels(push=push, start=first)
 
 
@@ -86,25 +87,36 @@ def drawn_roads(
     """
     with ThreadPoolExecutor(n_threads()) as pool:
         for crossing, columns in columns_of(crossings):
-            source = _Source(crossing, columns, timeline, seed)
+            draw = _drawing(crossing, columns, timeline, seed)
             for start in range(0, len(runs), _TOGETHER):
                 some = runs[start : start + _TOGETHER]
-                drawn = np.array(list(pool.map(source.draw, some)))
+                drawn = np.array(list(pool.map(draw, some)))
                 yield columns, slice(start, start + len(some)), drawn[:, 0], drawn[:, 1]
 
 
+def _drawing(
+    crossing: Crossing, columns: slice, timeline: Timeline, seed: int
+) -> Callable[[int], Float[Array, "2 steps contacts"]]:
+    """Return what gives elevation and slope under one crossing's wheels by the run's number."""
+    if not isinstance(crossing.road, Profile):
+        return _Source(crossing, columns, timeline, seed).draw
+    given = given_road(crossing, timeline, columns)
+    road = np.array([given.elevation, given.slope])
+    return lambda _: road
+
+
 class _Source:
-    """Draws the road under the wheels of one crossing, run by run."""
+    """Draws the random road under the wheels of one crossing, run by run."""
 
     def __init__(self, crossing: Crossing, columns: slice, timeline: Timeline, seed: int) -> None:
-        self._crossing, self._seed = crossing, seed
+        assert isinstance(crossing.road, RoadClass)  # the caller has looked
+        self._crossing, self._road, self._seed = crossing, crossing.road, seed
         self._station = timeline.station[:, columns]
         self._tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
         self._under = [np.flatnonzero(which == i) for i in range(len(self._tracks))]
         self._extent = _road_extent(crossing, float(timeline.time[-1]))
-        if not isinstance(crossing.road, Profile):
-            dt = float(timeline.time[1] - timeline.time[0])
-            _check_step(crossing, float(timeline.speed[:, columns].max()), dt)
+        dt = float(timeline.time[1] - timeline.time[0])
+        _check_step(crossing, float(timeline.speed[:, columns].max()), dt)
         # every run's profile has the same stations
         self._readers = [
             ProfileReader(profile.station, self._station[:, wheels])
@@ -120,13 +132,11 @@ class _Source:
         return out
 
     def _profiles(self, run: int) -> tuple[Profile, ...]:
-        """Return the profile of every wheel track; one given profile lies under all of them."""
+        """Return the profile of every wheel track."""
         crossing = self._crossing
-        if isinstance(crossing.road, Profile):
-            return (crossing.road,) * len(self._tracks)
         low, high = self._extent
         return synthesise_tracks(
-            crossing.road,
+            self._road,
             self._tracks,
             length=high - low,
             rng=run_generator(self._seed, crossing.route.name, run),

@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from trundle._checks import non_negative, set_frozen
+from trundle._checks import finite, non_negative, set_frozen
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
@@ -33,18 +33,21 @@ class Crossing:
     route : Route
         Where it drives, and how fast.
     road : RoadClass or Profile
-        Random roughness of a class, drawn anew for each run, or one given profile whose
-        station 0 is the route's start.
+        Random roughness of a class, drawn anew for each run, or one given profile, which
+        must cover run-in and route until the last wheel has left.
     band : RoughnessBand
-        Spatial frequencies of a random road.
+        Spatial frequencies of a random road; its contact patch averages a given profile too.
     entry : Entry
         How wheels come onto the floor.
     run_in : float or None
         Distance driven on rigid rough ground before time 0 [m]; None lets the slowest
-        motion of the vehicle decay to 5 %, 0 starts it at rest.
+        motion of the vehicle decay to 5 %, 0 starts it in equilibrium: at rest, or climbing
+        steadily where a given profile has a grade at its start.
     depart : float
         Time at which the front axle is at the entry's start [s], 0 or more: the floor is at
         rest at time 0.
+    chainage : float
+        Station of a given profile at the route's start [m].
     """
 
     vehicle: Vehicle
@@ -55,10 +58,17 @@ class Crossing:
     entry: Entry = field(default_factory=lambda: DriveIn(length=3.0))
     run_in: float | None = None
     depart: float = 0.0
+    chainage: float = 0.0
 
     def __post_init__(self) -> None:
         """Check times and distances."""
         set_frozen(self, depart=non_negative("depart", self.depart))
+        set_frozen(self, chainage=finite("chainage", self.chainage))
+        if self.chainage != 0.0 and not isinstance(self.road, Profile):
+            raise InputError(
+                "chainage is the station of a given profile at the route's start; got "
+                f"{self.chainage:g} m with a random road, which has no stations: leave it out"
+            )
         if self.run_in is not None:
             set_frozen(self, run_in=non_negative("run_in", self.run_in))
 
@@ -81,6 +91,12 @@ class Crossing:
         """Time at which the last wheel has left the floor [s]."""
         way = self.route.length - self.lead + self.vehicle.length
         return self.depart + self.route.law.time_to(way)
+
+    def wheels_on_floor(self, time: float) -> int:
+        """Return how many of the wheels stand on the route at a time."""
+        front = self.lead + float(self.route.law.distance(time - self.depart))
+        station = front - self.vehicle.setback
+        return int(np.count_nonzero((station >= 0.0) & (station <= self.route.length)))
 
     def front_axle(self, time: float) -> tuple[float, float] | None:
         """Return where the front axle stands at a time [m], or None when it is off the route."""

@@ -190,6 +190,7 @@ def _runs_of(layout: Layout, record: Record, seed: int) -> Runs:
         seed=seed,
         method=str(layout.method),
         f_max=layout.f_max,
+        coverage=layout.coverage,
         warnings=(*contact_warnings(float(np.mean(tension))), *layout.doubts),
     )
 

@@ -67,6 +67,8 @@ class Harmonics:
         Dynamic forces under the wheels [N/m].
     mean : MeanResponse
         Response to the static loads alone, computed beside them.
+    f_max : float
+        Highest frequency that modes and step show as it is [Hz].
     """
 
     time: Float[Array, " steps"]
@@ -78,6 +80,7 @@ class Harmonics:
     acceleration: Complex[Array, "waves steps points"]
     contact_forces: Complex[Array, "waves steps contacts"]
     mean: MeanResponse
+    f_max: float = np.inf
 
 
 def place_waves(
@@ -280,6 +283,7 @@ def _answers(layout: Layout, sets: list[_WaveSet], *, progress: Progress | None)
         acceleration=_complex(record.acceleration),
         contact_forces=_complex(record.forces),
         mean=mean_of(layout, everything),
+        f_max=layout.f_max,
     )
 
 

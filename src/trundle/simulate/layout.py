@@ -26,6 +26,7 @@ from trundle.errors import FitnessWarning, InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor, RigidGround
+from trundle.simulate._given_road import given_road_doubts
 from trundle.simulate._march import (
     ContactLaw,
     Progress,
@@ -41,10 +42,11 @@ from trundle.simulate._point_motion import PointFilters, complete, point_filters
 from trundle.simulate._residual import point_residual
 from trundle.simulate._roads import RoadUnderWheels
 from trundle.simulate._schedule import Timeline, operator_rows, timeline_of
-from trundle.simulate._stability import check_contact_loop, step_problem
+from trundle.simulate.coverage import Coverage, coverage_of
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
-from trundle.simulate.fitness import fitness_warnings
+from trundle.simulate.fitness import fitness_warnings, resolved_to
 from trundle.simulate.prepared import PreparedFloor, prepare
+from trundle.simulate.step_limits import check_contact_loop, step_problem
 from trundle.structure import Floor
 
 __all__ = ["Layout", "lay_out", "lay_out_on_rigid_ground"]
@@ -108,10 +110,13 @@ class Layout:
 
     @property
     def f_max(self) -> float:
-        """Highest frequency that the computation contains [Hz]."""
-        nyquist = 0.5 / self.integration.dt
-        modal = self.integration
-        return min(modal.f_max, nyquist) if isinstance(modal, Modal) else nyquist
+        """Highest frequency that modes and step show as it is [Hz]."""
+        return resolved_to(self.integration)
+
+    @property
+    def coverage(self) -> Coverage:
+        """Which bands the roads excite, and whether the vehicles have left at the end."""
+        return coverage_of(self.crossings, float(self.time[-1]))
 
     @property
     def time(self) -> Float[Array, " steps"]:
@@ -245,6 +250,7 @@ def lay_out(
     if not points:
         raise InputError("name at least one point where the response is to be read")
     _check_vehicles(many, method.integration)
+    doubts = given_road_doubts(many, method.integration.dt, duration)
     if isinstance(floor, Floor):
         floor = prepare(floor, method.integration, method.damping)
     _check_prepared(floor, method)
@@ -261,7 +267,7 @@ def lay_out(
     layout = Layout(
         crossings=many,
         method=method,
-        doubts=fitness_warnings(many, method, floor.floor, floor.modes),
+        doubts=(*fitness_warnings(many, method, floor.floor, floor.modes), *doubts),
         point_names=tuple(points),
         timeline=timeline,
         floor=under_wheels,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
+from trundle.simulate.coverage import Coverage
 
 __all__ = ["MeanResponse", "Runs"]
 
@@ -56,9 +57,11 @@ class Runs:
     method : str
         Interaction, integration, damping and contact, in words.
     f_max : float
-        Highest frequency that the computation contains [Hz].
+        Highest frequency that modes and step show as it is [Hz].
     warnings : tuple of FitnessWarning
         Doubts about the result's fitness.
+    coverage : Coverage
+        Which bands the road excites, and whether the vehicles have left.
     """
 
     time: Float[Array, " steps"]
@@ -72,6 +75,7 @@ class Runs:
     method: str
     f_max: float
     warnings: tuple[FitnessWarning, ...] = ()
+    coverage: Coverage = field(default_factory=Coverage)
 
     @property
     def n_runs(self) -> int:

@@ -1,5 +1,7 @@
 """Model floors with flat shells, eccentric beams, springs and supports."""
 
+from trundle.structure.arching import arching
+from trundle.structure.edges import EDGES, Edge
 from trundle.structure.floor import (
     DOF_NAMES,
     BeamGroup,
@@ -9,8 +11,13 @@ from trundle.structure.floor import (
     ShellGroup,
     SpringGroup,
 )
-from trundle.structure.plan import EDGES, FloorPlan, Rectangle, build_floor, mesh_lines
+from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.reference import reference_plan, reference_unit
+from trundle.structure.resolution import (
+    ELEMENTS_PER_WAVE,
+    resolved_frequency,
+    resolving_mesh_size,
+)
 from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
 from trundle.structure.statics import self_weight_deflection
 
@@ -18,8 +25,10 @@ __all__ = [
     "CONCRETE",
     "DOF_NAMES",
     "EDGES",
+    "ELEMENTS_PER_WAVE",
     "BeamGroup",
     "BeamSection",
+    "Edge",
     "Floor",
     "FloorPlan",
     "Material",
@@ -29,9 +38,12 @@ __all__ = [
     "ShellGroup",
     "ShellSection",
     "SpringGroup",
+    "arching",
     "build_floor",
     "mesh_lines",
     "reference_plan",
     "reference_unit",
+    "resolved_frequency",
+    "resolving_mesh_size",
     "self_weight_deflection",
 ]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Literal, TypeAlias, get_args
+from typing import get_args
 
 import numpy as np
 from jaxtyping import Float
@@ -12,16 +12,11 @@ from jaxtyping import Float
 from trundle._checks import count, frozen_array, one_of, positive, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.structure.edges import EDGES, Edge, hold_edge, hold_plane, middle_of
 from trundle.structure.floor import BeamGroup, Floor, MirrorPlane, ShellGroup
 from trundle.structure.sections import BeamSection, Material, ShellSection
 
-__all__ = ["EDGES", "Edge", "FloorPlan", "Rectangle", "build_floor"]
-
-Edge: TypeAlias = Literal["free", "symmetry", "pinned", "clamped"]
-"""How an edge of the plan is held."""
-
-EDGES = ("x_min", "x_max", "y_min", "y_max")
-"""Names of the four edges of a plan."""
+__all__ = ["FloorPlan", "Rectangle", "build_floor", "mesh_lines"]
 
 _COLUMN_ELEMENTS = 4
 _SNAP = 1e-6  # m
@@ -74,7 +69,8 @@ class FloorPlan:
     storey_below, storey_above : float
         Column lengths to their fixed far ends [m]; 0 leaves that storey out.
     edges : dict of str to str
-        ``free``, ``symmetry``, ``pinned`` or ``clamped`` for `EDGES`; free unless named.
+        ``free``, ``symmetry``, ``simple``, ``pinned`` or ``clamped`` for `EDGES`, see `Edge`;
+        free unless named.
         Beams and columns on a symmetry edge get half their stiffness and mass.
     eccentric_beams : bool
         Beams hang below the slab (True) or lie in its mid-plane (False).
@@ -123,6 +119,11 @@ class FloorPlan:
         count("secondary_per_bay", self.secondary_per_bay)
 
     @property
+    def has_columns(self) -> bool:
+        """Whether columns stand under or over the floor."""
+        return self.column is not None and self.storey_below + self.storey_above > 0.0
+
+    @property
     def secondary_lines(self) -> Float[Array, " lines"]:
         """Where the secondary beams stand along x [m]."""
         if self.secondary_y is None or len(self.x_lines) < 2:
@@ -161,9 +162,11 @@ def build_floor(plan: FloorPlan, *, mesh_size: float) -> Floor:
     fixed = np.zeros((len(slab_nodes), 6), dtype=bool)
     mirrored = np.zeros_like(fixed)
     for edge, kind in plan.edges.items():
-        _hold_edge(fixed, _edge_nodes(grid, edge), edge, kind)
+        hold_edge(fixed, _edge_nodes(grid, edge), edge, kind)
         if kind == "symmetry":
-            _hold_edge(mirrored, _edge_nodes(grid, edge), edge, kind)
+            hold_edge(mirrored, _edge_nodes(grid, edge), edge, kind)
+    if "simple" in plan.edges.values() and not plan.has_columns:
+        hold_plane(fixed, slab_nodes, middle_of((plan.x_extent, plan.y_extent), plan.edges))
     beams = _beams(plan, x, y, grid)
     columns, column_nodes, column_fixed = _columns(plan, x, y, grid, mirrored)
     corners = [grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]]
@@ -213,20 +216,6 @@ def _at(line: Array, station: float) -> int:
 def _edge_nodes(grid: Array, edge: str) -> Array:
     sides = {"x_min": grid[:, 0], "x_max": grid[:, -1], "y_min": grid[0], "y_max": grid[-1]}
     return sides[edge]
-
-
-def _hold_edge(fixed: Array, nodes: Array, edge: str, kind: Edge) -> None:
-    normal = 0 if edge.startswith("x") else 1
-    held = {
-        "free": [],
-        # A mirror plane lets nothing cross it and allows no rotation out of it.
-        "symmetry": [normal, 3 + (1 - normal), 5],
-        # Hard simple support: no deflection, no twist of the edge.
-        "pinned": [0, 1, 2, 3 + normal],
-        "clamped": [0, 1, 2, 3, 4, 5],
-    }
-    for dof in held[kind]:
-        fixed[nodes, dof] = True
 
 
 def _beams(plan: FloorPlan, x: Array, y: Array, grid: Array) -> list[BeamGroup]:

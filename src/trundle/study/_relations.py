@@ -9,6 +9,7 @@ from trundle.dynamics import Modal
 from trundle.errors import InputError, Problem
 from trundle.road import RoughnessBand
 from trundle.simulate.ensemble import LEAST_BATCH
+from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import FloorPlan
 from trundle.study.model import Drive, MethodPlan, road_label
 from trundle.study.read import StudyFile
@@ -40,6 +41,7 @@ def relation_problems(
         found += _roughness(drives, methods, band, follows_dt=follows_dt)
     found += _sizes(file, drives, methods)
     found += _entries(drives, methods)
+    found += _vehicle_steps(drives, methods)
     return found
 
 
@@ -132,11 +134,12 @@ def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[
                 f"{500.0 / integration.f_max:g} ms (two samples a period)",
                 remedy="shorten dt, or lower f_max",
             )
-        if file.general is not None and integration.dt > file.general.duration / 10.0:
+        duration = None if file.general is None else file.general.duration
+        if duration is not None and integration.dt > duration / 10.0:
             yield Problem(
                 place=f"method[{i + 1}].dt",
                 value=f"{1e3 * integration.dt:g} ms",
-                rule=f"a record of {file.general.duration:g} s needs at least 10 steps",
+                rule=f"a record of {duration:g} s needs at least 10 steps",
                 remedy="shorten dt; 5 ms shows bands up to 80 Hz",
             )
     yield from _assessed_step(file, methods)
@@ -172,13 +175,23 @@ def _supports(plan: FloorPlan) -> Iterator[Problem]:
             rule="columns need storey_below or storey_above, and storeys need a column",
             remedy="give both, or neither",
         )
-    elif plan.column is None and not {"pinned", "clamped"} & set(plan.edges.values()):
+    elif plan.column is None and not _stands(plan.edges):
         yield Problem(
-            place="floor",
-            value="no columns, and no pinned or clamped edge",
-            rule="nothing holds this floor: it could move without strain",
-            remedy="add column and storey_below, or a pinned edge",
+            place="floor.edges",
+            value=", ".join(f"{e} {kind}" for e, kind in plan.edges.items() if kind != "free")
+            or "no columns, and no simple, pinned or clamped edge",
+            rule="nothing holds this floor: it would sink, or tip over about a lone edge",
+            remedy="add column and storey_below, or hold another edge: simple, pinned or clamped",
         )
+
+
+def _stands(edges: Mapping[str, str]) -> bool:
+    """Return whether edges alone hold a floor up, and against tipping."""
+    bearing = [edge for edge, kind in edges.items() if kind in ("simple", "pinned")]
+    level = {edge[0] for edge, kind in edges.items() if kind == "symmetry"}
+    if "clamped" in edges.values() or len(bearing) > 1:
+        return True
+    return bool(bearing) and bearing[0][0] in level
 
 
 def _roughness(
@@ -201,7 +214,7 @@ def _roughness(
                     f"{limit:.3g} 1/m only, and the road's begin at {band.n_min:g} 1/m",
                     remedy="shorten dt, or lower n_min or the speed",
                 )
-            elif not follows_dt and band.n_max > limit * (1 + 1e-9):
+            elif not follows_dt and (method.band or band).n_max > limit * (1 + 1e-9):
                 yield Problem(
                     place="roughness.n_max",
                     value=f"{band.n_max:g} 1/m",
@@ -229,12 +242,14 @@ def _sizes(
             rule="what is kept of every run would not fit in memory",
             remedy=f"use at most {int(_MAX_HISTORY / kept)} runs, or fewer points",
         )
+    ways = (d.route.law.time_to(d.route.length + 2.0 * d.vehicle.length) for d in drives.values())
+    duration = file.general.duration or max(ways, default=0.0) + 5.0
     for method in methods.values():
-        steps = file.general.duration / method.interaction.integration.dt
+        steps = duration / method.interaction.integration.dt
         if steps > _MAX_STEPS:
             yield Problem(
                 place="duration",
-                value=f"{file.general.duration:g} s",
+                value=f"{duration:g} s",
                 rule=f"method {method.name!r} would take {steps:.3g} steps; "
                 f"the limit is {_MAX_STEPS}",
                 remedy="shorten the duration, or lengthen dt",
@@ -242,11 +257,29 @@ def _sizes(
         elif steps * per_step > _MAX_HISTORY:
             yield Problem(
                 place="duration",
-                value=f"{file.general.duration:g} s",
+                value=f"{duration:g} s",
                 rule=f"the histories of method {method.name!r} would not fit in memory, even of "
                 f"{LEAST_BATCH} runs at a time",
                 remedy="use fewer points, a shorter record, or a longer dt",
             )
+
+
+def _vehicle_steps(
+    drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]
+) -> Iterator[Problem]:
+    """Give the vehicles whose own vibration is too fast for a method's steps."""
+    vehicles = {drive.vehicle.name: drive.vehicle for drive in drives.values()}
+    for method in methods.values():
+        integration = method.interaction.integration
+        for vehicle in vehicles.values() if isinstance(integration, Modal) else ():
+            if problem := step_problem(vehicle, integration.dt):
+                yield Problem(
+                    place=f"method {method.name!r}.dt",
+                    value=f"{1e3 * integration.dt:g} ms",
+                    rule=problem.partition(": shorten")[0],
+                    remedy=f"shorten dt to {1e3 * longest_step(vehicle):.2g} ms, or see whether a "
+                    "stiffness or a mass has the wrong unit",
+                )
 
 
 def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -86,8 +87,8 @@ class _Builder:
         plan, mesh_size = self._plan()
         vehicles = self._vehicles()
         drives = self._drives(vehicles)
-        methods = self._methods(mesh_size)
         band, follows = self._band()
+        methods = self._methods(mesh_size, band)
         assessment = self._assessment()
         isolations = self._isolations()
         mapped, mistakes = map_plan_of(
@@ -219,7 +220,7 @@ class _Builder:
                 )
         return drives
 
-    def _methods(self, mesh_size: float) -> dict[str, MethodPlan]:
+    def _methods(self, mesh_size: float, band: RoughnessBand | None) -> dict[str, MethodPlan]:
         methods: dict[str, MethodPlan] = {}
         for i, section in self.file.lists.get("method", []):
             place = f"method[{i + 1}]"
@@ -233,10 +234,26 @@ class _Builder:
             kind = Coupled if section.interaction == "coupled" else Decoupled
             contact = Hat() if section.contact == "hat" else Hermite()
             made = kind(integration=integration, damping=damping, contact=contact)
+            if section.entry == "abrupt" and section.entry_length is not None:
+                self.problems.append(_length_of_nothing(place, section.entry_length))
             default = _DEFAULT_DRIVE_IN if section.entry == "drive_in" else mesh_size
             entry = entry_of(section.entry, section.entry_length or default)
-            methods[section.name] = MethodPlan(name=section.name, interaction=made, entry=entry)
+            own = None if band is None else self._own_band(section, place, band)
+            methods[section.name] = MethodPlan(
+                name=section.name, interaction=made, entry=entry, band=own
+            )
         return methods
+
+    def _own_band(self, section: Any, place: str, band: RoughnessBand) -> RoughnessBand | None:
+        """Return the waves of a method that names its own."""
+        own = {
+            name: value
+            for name in ("n_max", "contact_patch")
+            if (value := getattr(section, name)) is not None
+        }
+        if not own:
+            return None
+        return self._try(f"{place}.{next(iter(own))}", lambda: replace(band, **own))
 
     def _damping(self, section: Any, place: str) -> Damping | None:
         d = section.damping
@@ -375,6 +392,15 @@ class _Builder:
                 remedy=f"there are: {', '.join(known) or 'none'}",
             )
         )
+
+
+def _length_of_nothing(place: str, length: float) -> Problem:
+    return Problem(
+        place=f"{place}.entry_length",
+        value=f"{length:g} m",
+        rule="an abrupt entry has no length",
+        remedy='remove entry_length, or set entry = "drive_in" or "ramp"',
+    )
 
 
 def _ratio_with_newmark(place: str) -> Problem:

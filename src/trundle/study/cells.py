@@ -9,7 +9,7 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, ExactStatistics, Reduced
-from trundle.simulate import TruncationChange
+from trundle.simulate import Coverage, TruncationChange
 
 __all__ = ["EXACT_SHARES", "Cell", "CellKey", "History"]
 
@@ -69,6 +69,8 @@ class Cell:
         The first run in time.
     top : float
         Highest frequency that its levels can be trusted to [Hz].
+    coverage : Coverage
+        Which bands the road excites, and whether the vehicles have left.
     warnings : tuple of FitnessWarning
         Doubts about the cell.
     """
@@ -81,6 +83,7 @@ class Cell:
     truncation: TruncationChange | None
     history: History
     top: float
+    coverage: Coverage
     warnings: tuple[FitnessWarning, ...]
 
     @property

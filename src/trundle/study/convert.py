@@ -11,7 +11,7 @@ from trundle.road import RoadClass
 from trundle.signals import Isolation, Isolator, TransmissibilityTable
 from trundle.structure import FloorPlan, Material, Rectangle, ShellSection
 from trundle.study import schema
-from trundle.vehicle import VEHICLES, Axle, Body, Hinge, Vehicle, build_vehicle
+from trundle.vehicle import Axle, Body, Hinge, Vehicle, build_vehicle, library_vehicle
 
 __all__ = ["floor_plan_of", "isolation_of", "road_of", "vehicle_of"]
 
@@ -74,4 +74,4 @@ def vehicle_of(name: str, section: Any) -> Vehicle:
             hinges=tuple(Hinge(**dict(h)) for h in section.hinges),
             source="study file",
         )
-    return VEHICLES[section.kind]()
+    return library_vehicle(section.kind)

@@ -6,9 +6,8 @@ import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 
-from threadpoolctl import threadpool_limits
-
 from trundle._threads import n_threads
+from trundle.dynamics import repeatable
 from trundle.study.jobs import Job, LaidOut, compute
 from trundle.study.pieces import Piece
 
@@ -81,8 +80,8 @@ def compute_here(
     at_once = min(_AT_ONCE, n_threads())
     wanted = [job for job, parts in missing.items() if parts]
     # One limit around all: parts that set their own would undo each other's.
-    with threadpool_limits(limits=1, user_api="blas"), ThreadPoolExecutor(at_once) as pool:
+    with repeatable(), ThreadPoolExecutor(at_once) as pool:
         carry_out([job for job in wanted if job.modal], pool, at_once)
-    # A sparse solver answers one caller at a time, and has threads of its own.
-    with ThreadPoolExecutor(1) as pool:
+    # A sparse solver answers one caller at a time.
+    with repeatable(), ThreadPoolExecutor(1) as pool:
         carry_out([job for job in wanted if not job.modal], pool, 0)

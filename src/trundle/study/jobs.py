@@ -152,9 +152,9 @@ def _jobs(
     case, method = what
     crossings = study.crossings(case, roads[0], method)
     first = study.roads[roads[0]].roughness
-    size = runs_at_once(
-        crossings, method.interaction.integration.dt, study.duration, len(study.points)
-    )
+    length = study.record_length(crossings)
+    dt = method.interaction.integration.dt
+    size = runs_at_once(crossings, dt, length, len(study.points))
     n_parts = -(-study.runs // size)
     edges = np.linspace(0, study.runs, n_parts + 1).astype(int)
     modal = isinstance(method.interaction.integration, Modal)
@@ -167,7 +167,7 @@ def _jobs(
         parts=tuple(range(a, b) for a, b in itertools.pairwise(edges)),
         n_waves=max(2, _WAVES // len(crossings)) if modal else 0,
         points=study.points,
-        duration=study.duration,
+        duration=length,
         seed=study.seed,
         averaging=study.assessment.averaging if study.assessment else "max_1s",
         quantities=spectra_asked_for(study.assessment.criteria) if study.assessment else (),

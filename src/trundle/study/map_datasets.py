@@ -107,7 +107,7 @@ def _of_classes(
                 ways,
                 lambda i: classes[i].classes().astype(float),
                 "1",
-                "strictest velocity criterion passed, -1 for none",
+                "strictest velocity criterion passed, -1 for none met, -2 for not assessed",
             ),
         },
         coords={

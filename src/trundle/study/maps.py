@@ -143,7 +143,13 @@ def map_piece(
     arrays: dict[str, Array] = {}
     for i in range(len(factors)):
         found = every.part(slice(i * plan.runs, (i + 1) * plan.runs))
-        held = class_map(found, plan.criteria, percentile=plan.percentile, f_max=layout.f_max)
+        held = class_map(
+            found,
+            plan.criteria,
+            percentile=plan.percentile,
+            f_max=layout.f_max,
+            coverage=layout.coverage,
+        )
         arrays |= {f"{i}.{name}": getattr(held, name) for name in _ARRAYS}
         arrays[f"{i}.complete"] = np.array(held.complete)
         for name in _LEVELS:

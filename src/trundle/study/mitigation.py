@@ -8,10 +8,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from trundle.criteria import assess_reduced, spectra_asked_for
-from trundle.dynamics import Modes
+from trundle.dynamics import Modes, repeatable
 from trundle.errors import InputError
 from trundle.response import (
     behind_isolators,
@@ -81,7 +80,7 @@ def try_changes(
     found: dict[tuple[str, float, str], list[Outcome]] = {}
     resonances: dict[tuple[str, str], tuple[float, ...]] = {}
     slab: _Slab | None = None
-    with threadpool_limits(limits=1, user_api="blas"):
+    with repeatable():
         for together in alike:
             first = together[0]
             tell(f"{first.label}: modes of the floor", done / total)
@@ -179,7 +178,6 @@ class _Passages:
 
     runs: Runs
     mean: MeanResponse
-    excited_to: float
 
 
 def _slab(study: Study, thickness: float | None) -> _Slab:
@@ -239,8 +237,7 @@ def _passages(tried: _Tried, case: Case, speed: float, runs: int) -> _Passages:
         duration=study.long_enough(crossings),
     )
     found, mean = runs_with_mean(layout, runs=range(runs), seed=study.seed)
-    excited_to = min(speed * crossing.band.n_max for crossing in crossings)
-    return _Passages(runs=found, mean=mean, excited_to=excited_to)
+    return _Passages(runs=found, mean=mean)
 
 
 def _outcomes(
@@ -259,7 +256,7 @@ def _outcomes(
     )
     doubts = (
         *(w for w in runs.warnings if w.subject != LOST_CONTACT),
-        *level_warnings(assessment.averaging, float(runs.time[-1])),
+        *level_warnings(assessment.averaging, float(runs.time[-1]), levels=reduced[0].spectra),
         *few_runs_warnings(len(runs.acceleration), assessment.percentile),
     )
     return [
@@ -273,9 +270,10 @@ def _outcomes(
                 assessment.criteria,
                 percentile=assessment.percentile,
                 top=min(runs.f_max, runs.sampling_frequency / 2.5),
+                coverage=runs.coverage,
                 events=assessment.events,
             ),
-            excited_to=passages.excited_to,
+            excited_to=runs.coverage.excited_to,
             warnings=(*contact_warnings(float(one.tension.any(axis=1).mean())), *doubts),
         )
         for road, one in zip(tried.classes, reduced, strict=True)

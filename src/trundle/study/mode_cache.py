@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from trundle.dynamics import Modes, natural_modes
+from trundle.dynamics import Modes, available_backends, natural_modes
 from trundle.structure import Floor
 
 __all__ = ["cache_folder", "modes_of"]
 
 Progress = Callable[[float], None]
 
-_KEPT = 8  # floors; the one unused for longest goes first
+_KEPT = 8  # sets of modes; the one unused for longest goes first
 
 
 def cache_folder() -> Path | None:
@@ -39,16 +39,19 @@ def modes_of(floor: Floor, *, f_max: float, progress: Progress | None = None) ->
     Parameters
     ----------
     floor : Floor
-        The floor; its content hash is the key.
+        The floor.
     f_max : float
-        Upper frequency [Hz]. Kept modes that reach further serve as well.
+        Upper frequency [Hz].
     progress : callable, optional
         Told the share of modes found, where they must be found.
     """
     folder = cache_folder()
-    file = None if folder is None else folder / f"{floor.content_hash}.npz"
+    # Modes found up to another frequency, or by another solver, differ in their last digits: what
+    # other studies left must not change this one's.
+    name = f"{floor.content_hash}-{f_max:.9g}-{available_backends()[0]}.npz"
+    file = None if folder is None else folder / name
     kept = None if file is None else _read(file, floor.n_dofs)
-    if kept is not None and kept.f_max >= f_max:
+    if kept is not None and kept.f_max == f_max:
         return kept
     modes = natural_modes(floor.mass, floor.stiffness, f_max=f_max, progress=progress)
     if file is not None:

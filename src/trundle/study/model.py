@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from trundle.criteria import Criterion
 from trundle.road import RoadClass, RoughnessBand
-from trundle.route import ConstantSpeed, DriveIn, Entry, Ramp, Route, StaticStart
+from trundle.route import Abrupt, ConstantSpeed, DriveIn, Entry, Ramp, Route, StaticStart
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.structure import Floor, FloorPlan
@@ -75,13 +77,16 @@ class MethodPlan:
         Name in the study.
     interaction : Decoupled or Coupled
         The method.
-    entry : Ramp, DriveIn or StaticStart
+    entry : Ramp, DriveIn, StaticStart or Abrupt
         How wheels come onto the floor.
+    band : RoughnessBand or None
+        Waves of its own; those of the study unless given.
     """
 
     name: str
     interaction: Interaction
     entry: Entry
+    band: RoughnessBand | None = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -149,8 +154,9 @@ class Study:
         Title, path, text and hash of the study file.
     seed, runs : int
         Seed of all roads, and runs a cell.
-    duration : float
-        Length of every record [s].
+    duration : float or None
+        Length of every record [s]; None lets each last until its vehicles have left and the floor
+        has come to rest.
     floor : Floor
         The meshed floor.
     plan : FloorPlan
@@ -187,7 +193,7 @@ class Study:
     content_hash: str
     seed: int
     runs: int
-    duration: float
+    duration: float | None
     floor: Floor
     plan: FloorPlan
     mesh_size: float
@@ -227,22 +233,31 @@ class Study:
         }
         return replace(self, drives=drives)
 
+    def record_length(self, crossings: Sequence[Crossing]) -> float:
+        """Return the length of a record of some crossings [s]: what was asked for, or enough."""
+        return self.long_enough(crossings) if self.duration is None else self.duration
+
     def long_enough(self, crossings: Sequence[Crossing]) -> float:
         """Return the length of a record in which crossings end and the floor comes to rest [s]."""
-        return max(self.duration, max(one.exit_time for one in crossings) + _TAIL)
+        enough = max(one.exit_time for one in crossings) + _TAIL
+        return max(self.duration or 0.0, float(np.ceil(enough)))
+
+    @property
+    def longest_record(self) -> float:
+        """Length of the longest record [s]."""
+        road = next(iter(self.roads))
+        return max(
+            self.record_length(self.crossings(case, road, self.methods[0])) for case in self.cases
+        )
 
     def band_for(self, drive: Drive, method: MethodPlan) -> RoughnessBand:
-        """Return the waves that a method's time step can follow at a route's speed."""
+        """Return a method's waves, as far as its time step can follow at a route's speed."""
+        band = method.band or self.band
         if not self.band_follows_dt:
-            return self.band
+            return band
         speed = float(drive.route.law.speed(0.0))
         limit = 0.5 / (speed * method.interaction.integration.dt)
-        return RoughnessBand(
-            n_min=self.band.n_min,
-            n_max=min(self.band.n_max, limit),
-            contact_patch=self.band.contact_patch,
-            gaussian_amplitudes=self.band.gaussian_amplitudes,
-        )
+        return replace(band, n_max=min(band.n_max, limit))
 
 
 def entry_of(kind: str, length: float) -> Entry:
@@ -251,6 +266,8 @@ def entry_of(kind: str, length: float) -> Entry:
         return Ramp(length=length)
     if kind == "static":
         return StaticStart(exit_length=length)
+    if kind == "abrupt":
+        return Abrupt()
     return DriveIn(length=length)
 
 

@@ -11,12 +11,12 @@ from trundle.errors import FitnessWarning
 from trundle.response import (
     BandSpectra,
     ExactStatistics,
-    Process,
+    LargestValues,
     Reduced,
     SpectrumQuantity,
     join,
 )
-from trundle.simulate import Runs, TruncationChange
+from trundle.simulate import Coverage, Runs, TruncationChange
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
 from trundle.study.cells import EXACT_SHARES, Cell, CellKey, History
 
@@ -36,7 +36,7 @@ _LEVELS = ("values", "times")
 _COARSE = 0.05  # change of an RMS by half the waves above which exact statistics are doubted
 _HISTORY = ("displacement", "velocity", "acceleration", "contact_forces")
 _TRUNCATION = ("velocity", "acceleration")
-_PROCESS = ("variance", "rate_variance", "covariance", "turning")
+_LARGEST = ("mean", "random")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,6 +77,7 @@ def runs_piece(
         "quantities": [spectra.quantity for spectra in _spectra(reduced[0])],
         "point_names": list(runs.point_names),
         "contact_names": list(runs.contact_names),
+        "coverage": runs.coverage.as_notes(),
         "top": min(runs.f_max, runs.sampling_frequency / 2.5),
         "warnings": [[w.subject, w.message] for w in runs.warnings if w.subject != LOST_CONTACT],
     }
@@ -92,8 +93,8 @@ def exact_piece(exact: ExactStatistics, factors: Sequence[float]) -> Piece:
     arrays["resolved"] = exact.resolved
     arrays |= {f"mean.{name}": value for name, value in exact.mean.items()}
     arrays |= {f"variance.{name}": value for name, value in exact.variance.items()}
-    for quantity, process in exact.processes.items():
-        arrays |= {f"process.{quantity}.{name}": getattr(process, name) for name in _PROCESS}
+    for quantity, values in exact.largest.items():
+        arrays |= {f"largest.{quantity}.{name}": getattr(values, name) for name in _LARGEST}
     arrays |= {"band_mean": exact.band_mean, "band_variance": exact.band_variance}
     for i, factor in enumerate(factors):
         arrays[f"{i}.peaks"] = exact.rougher(factor).peaks(EXACT_SHARES)
@@ -135,6 +136,7 @@ def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> 
             time=first["time"], **{name: first[f"{road}.history.{name}"] for name in _HISTORY}
         ),
         top=float(notes["top"]),
+        coverage=Coverage.from_notes(notes["coverage"]),
         warnings=(
             *pulling,
             *_quadrature_warnings(key, exact),
@@ -202,11 +204,9 @@ def _exact(piece: Piece) -> ExactStatistics:
         time=arrays["time"],
         mean=mean,
         variance=named("variance"),
-        processes={
-            quantity: Process(
-                time=arrays["time"],
-                mean=mean[quantity],
-                **{name: arrays[f"process.{quantity}.{name}"] for name in _PROCESS},
+        largest={
+            quantity: LargestValues(
+                **{name: arrays[f"largest.{quantity}.{name}"] for name in _LARGEST}
             )
             for quantity in ("velocity", "acceleration")
         },

@@ -14,6 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from trundle.errors import Problem, StudyError
 from trundle.study import schema
+from trundle.vehicle import RETIRED, VEHICLES
 
 __all__ = ["StudyFile", "read_study", "read_text"]
 
@@ -277,12 +278,11 @@ def _problem(error: dict[str, Any], place: str, kind: Any, data: Mapping[str, An
         remedy = "add one" if isinstance(location[-1], int) else f"add {location[-1]}"
         return Problem(place=path, value="nothing", rule="this is required", remedy=remedy)
     if error["type"] in {"union_tag_invalid", "union_tag_not_found"}:
-        kinds = error["ctx"].get("expected_tags", "'reference_unit', 'plan'")
         return Problem(
             place=_path(place, ["kind"]),
             value=_show(data.get("kind", "nothing")),
-            rule=f"must be one of {_tag_names(kind)}",
-            remedy=_did_you_mean(str(data.get("kind", "")), kinds.replace("'", "").split(", ")),
+            rule=f"must be one of {', '.join(_tag_names(kind))}",
+            remedy=_kind_remedy(str(data.get("kind", "")), _tag_names(kind)),
         )
     return Problem(
         place=path,
@@ -299,6 +299,12 @@ def _remedy(error: dict[str, Any]) -> str:
     if error["type"] == "quantity":
         return "write a number and its unit in quotes"
     return "correct the value"
+
+
+def _kind_remedy(value: str, kinds: list[str]) -> str:
+    if value in RETIRED and set(VEHICLES) <= set(kinds):
+        return f"no longer offered: {RETIRED[value]}"
+    return _did_you_mean(value, kinds)
 
 
 def _did_you_mean(value: str, options: list[str]) -> str:
@@ -338,13 +344,12 @@ def _members(kind: Any) -> list[Any]:
     return list(getattr(inner, "__args__", (inner,)))
 
 
-def _tag_names(kind: Any) -> str:
-    names = [
+def _tag_names(kind: Any) -> list[str]:
+    return [
         name
         for member in _members(kind)
         for name in getattr(member.model_fields["kind"].annotation, "__args__", ())
     ]
-    return ", ".join(names)
 
 
 def _tags(kind: Any, data: Mapping[str, Any]) -> set[str]:

@@ -8,12 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from trundle.criteria import Verdict, assess_reduced
-from trundle.dynamics import Modal, Modes
+from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import FitnessWarning
-from trundle.response import few_runs_warnings, level_warnings
-from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
+from trundle.response import BandSpectra, few_runs_warnings, level_warnings
+from trundle.simulate import Coupled, Crossing, PreparedFloor, StaticFlexibility, prepare
 from trundle.structure import Floor
+from trundle.study.assumptions import assumption_warnings, early_end_warnings
 from trundle.study.cells import Cell, CellKey
+from trundle.study.doubts import study_doubts
 from trundle.study.in_threads import compute_here
 from trundle.study.jobs import Job, lay_out_job, plan_jobs
 from trundle.study.maps import MapKey, StudyMap, map_of
@@ -24,7 +26,7 @@ from trundle.study.progress import Bar, Report
 from trundle.study.scale_out import Cluster
 from trundle.study.unfinished import InMemory, PieceStore
 
-__all__ = ["StudyResult", "positions_at", "run_study"]
+__all__ = ["StudyResult", "positions_at", "run_study", "wheels_at"]
 
 _MODES_SHARE = 0.45  # of a study's time, as a first guess for the bar
 
@@ -62,11 +64,37 @@ class StudyResult:
         assessment = self.study.assessment
         if assessment is not None and assessment.method in by_method:
             doubts = (
-                *level_warnings(assessment.averaging, self.study.duration),
+                *level_warnings(
+                    assessment.averaging,
+                    self.study.longest_record,
+                    levels=self._governing_levels(),
+                ),
                 *few_runs_warnings(self.study.runs, assessment.percentile),
+                *_map_warnings(self.study, assessment.percentile),
+                *assumption_warnings(self.study),
+                *study_doubts(self.study),
+                *(w for case in self.study.cases for w in early_end_warnings(self.study, case)),
             )
             by_method[assessment.method].update(dict.fromkeys(doubts))
         return {method: tuple(found) for method, found in by_method.items()}
+
+    def _governing_levels(self) -> BandSpectra | None:
+        """Return the levels of the assessed cell with the smallest margin."""
+        margins = {
+            key: min((v.margin for v in verdicts if np.isfinite(v.margin)), default=np.inf)
+            for key, verdicts in self.verdicts.items()
+        }
+        if not margins:
+            return None
+        return self.cells[min(margins, key=lambda key: margins[key])].reduced.spectra
+
+
+def _map_warnings(study: Study, percentile: float) -> tuple[FitnessWarning, ...]:
+    """Return the doubt about a map of fewer runs than the study's."""
+    if study.map is None or study.map.runs == study.runs:
+        return ()
+    found = few_runs_warnings(study.map.runs, percentile)
+    return tuple(FitnessWarning(subject="runs of the map", message=w.message) for w in found)
 
 
 def run_study(
@@ -120,13 +148,14 @@ def run_study(
             done=keep,
         )
     else:
-        for job, parts in missing.items():
-            if parts:
-                bar.begin(job)
-                carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
-                cluster.submit(job, parts, carrier)
-                cluster.collect(keep, wait=False)
-        cluster.collect(keep, wait=True)
+        with repeatable():
+            for job, parts in missing.items():
+                if parts:
+                    bar.begin(job)
+                    carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
+                    cluster.submit(job, parts, carrier)
+                    cluster.collect(keep, wait=False)
+            cluster.collect(keep, wait=True)
     tell("done", 1.0)
     return _result(study, jobs, store, modes)
 
@@ -223,9 +252,10 @@ def _all_modes(study: Study, tell: Report) -> Modes | None:
         return None
     label = f"modes of the floor below {f_max:g} Hz"
     tell(label, 0.0)
-    return modes_of(
-        study.floor, f_max=f_max, progress=lambda share: tell(label, _MODES_SHARE * share)
-    )
+    with repeatable():
+        return modes_of(
+            study.floor, f_max=f_max, progress=lambda share: tell(label, _MODES_SHARE * share)
+        )
 
 
 def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:
@@ -235,6 +265,7 @@ def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:
         study.assessment.criteria,
         percentile=study.assessment.percentile,
         top=cell.top,
+        coverage=cell.coverage,
         events=study.assessment.events,
     )
 
@@ -251,13 +282,20 @@ def positions_at(result: StudyResult, key: CellKey, time: float) -> dict[str, li
     time : float
         Time of the record [s]; NaN gives nothing.
     """
-    study = result.study
     if np.isnan(time):
         return {}
+    places = {c.route.name: c.front_axle(time) for c in _crossings(result, key)}
+    return {name: None if place is None else list(place) for name, place in places.items()}
+
+
+def wheels_at(result: StudyResult, key: CellKey, time: float) -> dict[str, int]:
+    """Return how many wheels of each vehicle stand on the floor at a time [s]."""
+    return {c.route.name: c.wheels_on_floor(time) for c in _crossings(result, key)}
+
+
+def _crossings(result: StudyResult, key: CellKey) -> tuple[Crossing, ...]:
+    """Return what drives in a cell."""
+    study = result.study
     case = next(case for case in study.cases if case.name == key.case)
     method = next(method for method in study.methods if method.name == key.method)
-    places = {
-        crossing.route.name: crossing.front_axle(time)
-        for crossing in study.crossings(case, key.road, method)
-    }
-    return {name: None if place is None else list(place) for name, place in places.items()}
+    return study.crossings(case, key.road, method)

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any
 
+from trundle.dynamics import repeatable
 from trundle.errors import ComputationError, InputError
 from trundle.simulate import PreparedFloor, prepare
 from trundle.structure import Floor
@@ -117,14 +118,15 @@ _kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last flo
 
 def _compute(job: Job, carrier: LaidOut | Floor, part: int) -> Piece:
     """Compute a part, in a worker."""
-    if isinstance(carrier, LaidOut):
-        return compute(job, carrier, part)
-    interaction = job.method.interaction
-    key = (carrier.content_hash, str(interaction))
-    if key not in _kept:
-        _kept.clear()
-        _kept[key] = prepare(carrier, interaction.integration, interaction.damping)
-    return compute(job, lay_out_job(job, _kept[key]), part)
+    with repeatable():
+        if isinstance(carrier, LaidOut):
+            return compute(job, carrier, part)
+        interaction = job.method.interaction
+        key = (carrier.content_hash, str(interaction))
+        if key not in _kept:
+            _kept.clear()
+            _kept[key] = prepare(carrier, interaction.integration, interaction.damping)
+        return compute(job, lay_out_job(job, _kept[key]), part)
 
 
 @contextmanager

@@ -5,7 +5,7 @@ Every section is checked by itself, so that the mistakes of all of them come at 
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
@@ -36,6 +36,7 @@ from trundle.study.fields import (
     Wavenumber,
     Whole,
 )
+from trundle.vehicle import VEHICLES
 
 __all__ = [
     "CriteriaSection",
@@ -58,7 +59,7 @@ __all__ = [
     "VehicleSection",
 ]
 
-EdgeKind: TypeAlias = Literal["free", "symmetry", "pinned", "clamped"]
+EdgeKind: TypeAlias = Literal["free", "symmetry", "simple", "pinned", "clamped"]
 _MANY = 1_000_000
 
 
@@ -68,7 +69,7 @@ class GeneralSection(Section):
     title: Annotated[Line, Field(max_length=200)]
     seed: Annotated[Whole, Field(ge=0, lt=2**63)]
     runs: Annotated[Whole, Field(ge=1, le=_MANY)]
-    duration: Time
+    duration: Time | None = None
 
 
 class ReferenceFloorSection(Section):
@@ -166,10 +167,16 @@ class PlanarVehicleSection(Section):
     hinges: tuple[HingeSection, ...] = ()
 
 
+if TYPE_CHECKING:
+    LibraryKind: TypeAlias = str
+else:  # the names are known only when the folder of vehicles has been read
+    LibraryKind = Literal[tuple(VEHICLES)]
+
+
 class LibraryVehicleSection(Section):
     """A vehicle of the library."""
 
-    kind: Literal["container_truck_40ft", "articulated_truck_5_axle"]
+    kind: LibraryKind
 
 
 VehicleSection: TypeAlias = Annotated[
@@ -245,9 +252,11 @@ class MethodSection(Section):
     f_max: Frequency | None = None
     precision: Literal["double", "single"] = "double"
     dt: Time
+    n_max: Wavenumber | None = None
+    contact_patch: NonNegativeLength | None = None
     damping: DampingSection
     contact: Literal["smooth", "hat"] = "smooth"
-    entry: Literal["drive_in", "ramp", "static"] = "drive_in"
+    entry: Literal["drive_in", "ramp", "static", "abrupt"] = "drive_in"
     entry_length: PositiveLength | None = None
 
 

@@ -10,7 +10,7 @@ import shutil
 import signal
 import tempfile
 import threading
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -44,6 +44,7 @@ _OURS = {
     "study.toml",
     "summary.csv",
     "summary.json",
+    "verdicts.csv",
 }
 
 
@@ -181,15 +182,14 @@ def write_results(result: StudyResult, folder: Path) -> None:
     (folder / "study.toml").write_text(result.study.text, encoding="utf-8")
     with uninterrupted():
         _write_zarr(result, folder / "results.zarr")
-    rows = list(summary_rows(result))
-    with (folder / "summary.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, fieldnames=list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
+    rows, verdicts = list(summary_rows(result)), list(_verdict_rows(result))
+    _write_csv(folder / "summary.csv", rows)
+    if verdicts:
+        _write_csv(folder / "verdicts.csv", [_flat(row) for row in verdicts])
     summary = {
         "provenance": provenance(result),
         "cells": rows,
-        "verdicts": list(_verdict_rows(result)),
+        "verdicts": verdicts,
         "warnings": {
             method: [str(warning) for warning in found]
             for method, found in result.warnings().items()
@@ -198,6 +198,22 @@ def write_results(result: StudyResult, folder: Path) -> None:
     text = json.dumps(plain(summary), indent=1, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     mark_results(folder)
+
+
+def _write_csv(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    with file.open("w", newline="", encoding="utf-8") as opened:
+        writer = csv.DictWriter(opened, fieldnames=list(rows[0]))
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a row whose lists are text, without what has no place in a table."""
+    return {
+        name: "; ".join(map(str, value)) if isinstance(value, list) else value
+        for name, value in row.items()
+        if not isinstance(value, dict)
+    }
 
 
 def mark_results(folder: Path) -> None:
@@ -265,7 +281,10 @@ def _verdict_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
                 "verdict": verdict.status,
                 "percentile": verdict.percentile,
                 "averaging": verdict.averaging,
+                "axis": verdict.axis,
                 "margin": verdict.margin,
+                "margin_low": verdict.interval[0],
+                "margin_high": verdict.interval[1],
                 "governing_band_hz": verdict.governing_band,
                 "value_si": verdict.value,
                 "limit_si": verdict.limit,
@@ -273,6 +292,8 @@ def _verdict_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
                 "time_s": verdict.time,
                 "front_axles_m": positions_at(result, key, verdict.time),
                 "unresolved_bands_hz": list(verdict.unresolved),
+                "unexcited_bands_hz": list(verdict.unexcited),
+                "reasons": list(verdict.reasons) if verdict.status == "not assessed" else [],
             }
 
 

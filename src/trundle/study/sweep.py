@@ -44,14 +44,6 @@ class Outcome:
     excited_to: float
     warnings: tuple[FitnessWarning, ...]
 
-    def excites(self, verdict: Verdict) -> bool:
-        """Return whether the road excites every band that a verdict was reached in."""
-        bands = verdict.bands
-        known = [s != "not assessed" for s in bands.statuses] if bands is not None else []
-        if bands is None or not any(known):
-            return True
-        return float(bands.frequencies[known].max()) <= self.excited_to
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Sweep:

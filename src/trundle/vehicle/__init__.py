@@ -1,9 +1,11 @@
 """Model linear multi-axle vehicles and build them from parts."""
 
+from trundle.vehicle.data_file import VehicleFile, read_vehicle
 from trundle.vehicle.library import (
+    RETIRED,
     VEHICLES,
-    articulated_truck_5_axle,
     container_truck_40ft,
+    library_vehicle,
     quarter_car,
     sprung_mass,
 )
@@ -19,16 +21,19 @@ from trundle.vehicle.planar import (
 
 __all__ = [
     "GRAVITY",
+    "RETIRED",
     "VEHICLES",
     "Axle",
     "Body",
     "Hinge",
     "LumpedMass",
     "Vehicle",
-    "articulated_truck_5_axle",
+    "VehicleFile",
     "build_vehicle",
     "container_truck_40ft",
     "damping_coefficient",
+    "library_vehicle",
     "quarter_car",
+    "read_vehicle",
     "sprung_mass",
 ]

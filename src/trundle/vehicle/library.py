@@ -4,20 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from trundle._checks import one_of
+from trundle.errors import InputError
+from trundle.vehicle.data_file import shipped_vehicles
 from trundle.vehicle.model import Vehicle
 from trundle.vehicle.planar import (
     Axle,
     Body,
-    Hinge,
     LumpedMass,
     build_vehicle,
     damping_coefficient,
 )
 
 __all__ = [
+    "RETIRED",
     "VEHICLES",
-    "articulated_truck_5_axle",
     "container_truck_40ft",
+    "library_vehicle",
     "quarter_car",
     "sprung_mass",
 ]
@@ -94,51 +97,6 @@ def container_truck_40ft() -> Vehicle:
     )
 
 
-def articulated_truck_5_axle() -> Vehicle:
-    """Build a five-axle articulated truck with separate wheel masses and tyres.
-
-    Returns
-    -------
-    Vehicle
-        Tractor with two axles, semitrailer with three.
-
-    References
-    ----------
-    Parameters of example A01 of D. Cantero, VBI-2D (NTNU): body masses 4500 and 31450 kg,
-    pitch inertias 4604 and 16302 kg m2, five suspensions and tyres; axle places follow from
-    its spacings: -0.5 m and 2.5 m from the tractor's centre, hinge at 2.15 m; trailer axles
-    at 1.8, 2.9 and 4.0 m behind the trailer's centre, hinge 6.15 m ahead of it.
-    """
-    tractor_centre = 0.5
-    hinge = tractor_centre + 2.15
-    trailer_centre = hinge + 6.15
-    places = (0.0, tractor_centre + 2.5, *(trailer_centre + d for d in (1.8, 2.9, 4.0)))
-    suspension = (400e3, 1000e3, 750e3, 750e3, 750e3)
-    wheel_mass = (700.0, 1100.0, 750.0, 750.0, 750.0)
-    tyre = (1750e3, 3500e3, 3500e3, 3500e3, 3500e3)
-    return build_vehicle(
-        name="5-axle articulated truck",
-        bodies=(
-            Body(mass=4500.0, pitch_inertia=4604.0, centre=tractor_centre),
-            Body(mass=31450.0, pitch_inertia=16302.0, centre=trailer_centre),
-        ),
-        hinges=(Hinge(bodies=(0, 1), setback=hinge),),
-        axles=tuple(
-            Axle(
-                body=0 if i < 2 else 1,
-                setback=places[i],
-                stiffness=suspension[i],
-                damping=1e3,
-                axle_mass=wheel_mass[i],
-                tyre_stiffness=tyre[i],
-                tyre_damping=10e3,
-            )
-            for i in range(5)
-        ),
-        source="VBI-2D example A01 (D. Cantero, NTNU), parameters only",
-    )
-
-
 def sprung_mass(*, mass: float, stiffness: float, damping: float = 0.0) -> Vehicle:
     """Build one mass on one spring and damper [kg], [N/m], [N s/m]."""
     return build_vehicle(
@@ -179,6 +137,35 @@ def quarter_car(
 
 VEHICLES: dict[str, Callable[[], Vehicle]] = {
     "container_truck_40ft": container_truck_40ft,
-    "articulated_truck_5_axle": articulated_truck_5_axle,
+    **shipped_vehicles(),
 }
-"""Ready vehicles by the name that a study file uses."""
+"""Ready vehicles by the name that a study file uses: the paper's, and one for each data file."""
+
+RETIRED: dict[str, str] = {
+    "articulated_truck_5_axle": "it had 1 % of damping and no source; use "
+    "'tractor_3axle_semitrailer_6_axle_worn'",
+}
+"""Vehicles that are no longer offered, each with what to use instead."""
+
+
+def library_vehicle(name: str) -> Vehicle:
+    """Build a ready vehicle by name.
+
+    Parameters
+    ----------
+    name : str
+        A name that ``trundle vehicles`` lists.
+
+    Raises
+    ------
+    InputError
+        No such vehicle; the message lists what there is, or says what has replaced it.
+
+    Examples
+    --------
+    >>> round(library_vehicle("tractor_3axle_semitrailer_6_axle").total_mass)
+    35633
+    """
+    if name in RETIRED:
+        raise InputError(f"vehicle {name!r} is no longer offered: {RETIRED[name]}")
+    return VEHICLES[one_of("vehicle", name, VEHICLES)]()

@@ -1,0 +1,42 @@
+"""Show what half the mesh size changes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from trundle.cli.screen import print_table, progress_bar
+from trundle.signals import nominal_frequency
+from trundle.structure import resolved_frequency
+from trundle.study.build import load_study
+from trundle.study.meshes import compare_meshes
+from trundle.units import MICROMETRE_PER_SECOND
+
+__all__ = ["compare"]
+
+
+def compare(path: Path) -> None:
+    """Compute a study's first case on two meshes, and print the levels band by band."""
+    study = load_study(path)
+    with progress_bar() as tell:
+        found = compare_meshes(study, report=tell)
+    coarse, fine = found.sizes
+    reach = resolved_frequency(study.plan, coarse)
+    for p, point in enumerate(found.points):
+        print_table(
+            f"{point}: {found.case}, road {found.road}, {found.method}; rms velocity [um/s]",
+            ("band [Hz]", f"{coarse:g} m", f"{fine:g} m", "change", "carried by the mesh"),
+            (
+                (
+                    f"{nominal_frequency(float(f)):g}",
+                    f"{found.levels[0, p, b] / MICROMETRE_PER_SECOND:.4g}",
+                    f"{found.levels[1, p, b] / MICROMETRE_PER_SECOND:.4g}",
+                    f"{100.0 * (found.ratios[p, b] - 1.0):+.0f} %",
+                    "yes" if f <= reach else "no",
+                )
+                for b, f in enumerate(found.bands)
+            ),
+        )
+    print(
+        f"change: {coarse:g} m against {fine:g} m on the same roads; where it is large, set "
+        f"mesh_size to {fine:g} m and look again"
+    )

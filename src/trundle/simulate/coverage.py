@@ -1,0 +1,108 @@
+"""Say how far a result reaches: what the road excites, and whether the vehicles have left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from trundle._typing import Array
+from trundle.road import Profile
+from trundle.signals import band_edges
+from trundle.simulate.crossing import Crossing
+
+__all__ = ["Coverage", "coverage_of"]
+
+_WHOLE = 0.99  # of a band's upper edge, that the road's waves must reach
+_TOP = 80.0  # Hz: the highest band that is assessed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coverage:
+    """Hold how far a result reaches; by default as far as anybody asks.
+
+    Attributes
+    ----------
+    excited_to : float
+        Frequency at which the waves of the first road end, the least of all vehicles [Hz].
+    leaves : float
+        Time at which the last wheel leaves the floor [s].
+    ends : float
+        Time at which the record ends [s].
+    """
+
+    excited_to: float = np.inf
+    leaves: float = -np.inf
+    ends: float = np.inf
+
+    @property
+    def left(self) -> bool:
+        """Whether every wheel is off the floor at the record's end."""
+        return self.ends >= self.leaves * (1.0 - 1e-9)
+
+    def excites(self, mid_band: Float[Array, " bands"]) -> Bool[Array, " bands"]:
+        """Return which bands the roads excite as a whole."""
+        return band_edges(np.asarray(mid_band, float))[:, 1] * _WHOLE <= self.excited_to
+
+    def reasons(self, *, waves: bool) -> tuple[str, ...]:
+        """Say what is missing and what would help.
+
+        Parameters
+        ----------
+        waves : bool
+            Whether bands are asked for that the road does not excite.
+        """
+        found: list[str] = []
+        if not self.left:
+            found.append(
+                f"the record ends at {self.ends:.3g} s and the last wheel leaves the floor at "
+                f"{self.leaves:.3g} s: lengthen or remove duration"
+            )
+        if waves:
+            times = 10.0**0.05 * _TOP / self.excited_to
+            found.append(
+                f"the road's waves end at {self.excited_to:.3g} Hz at this speed, and nothing "
+                f"excites the bands above: raise n_max {times:.2g} times for {_TOP:g} Hz, with a "
+                "contact patch"
+            )
+        return tuple(found)
+
+    def as_notes(self) -> dict[str, float | None]:
+        """Return the numbers as JSON can hold them."""
+        numbers = {"excited_to": self.excited_to, "leaves": self.leaves, "ends": self.ends}
+        return {name: value if np.isfinite(value) else None for name, value in numbers.items()}
+
+    @classmethod
+    def from_notes(cls, notes: Mapping[str, float | None]) -> Coverage:
+        """Return what `as_notes` gave."""
+        return cls(**{name: value for name, value in notes.items() if value is not None})
+
+
+def coverage_of(crossings: Sequence[Crossing], ends: float) -> Coverage:
+    """Return how far a record of some crossings reaches.
+
+    Parameters
+    ----------
+    crossings : sequence of Crossing
+        Who drives where.
+    ends : float
+        Length of the record [s].
+    """
+    return Coverage(
+        excited_to=min(_excited_to(crossing, ends) for crossing in crossings),
+        leaves=max(crossing.exit_time for crossing in crossings),
+        ends=ends,
+    )
+
+
+def _excited_to(crossing: Crossing, ends: float) -> float:
+    """Return where the waves of a road end under one vehicle [Hz]."""
+    clock = np.linspace(0.0, max(0.0, ends - crossing.depart), 201)
+    speed = float(np.max(crossing.route.law.speed(clock)))
+    if not isinstance(crossing.road, Profile):
+        return speed * crossing.band.n_max
+    apart = np.diff(crossing.road.station)
+    # samples hold no wave shorter than two of them; of a few points nobody knows what they hold
+    return speed * 0.5 / float(apart[apart > 0.0].min())

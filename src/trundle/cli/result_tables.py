@@ -13,6 +13,7 @@ from trundle.report import (
     road_words,
     summary_rows,
     verdict_matrix,
+    written,
 )
 from trundle.study.run import StudyResult
 
@@ -117,7 +118,7 @@ def _print_summary(result: StudyResult) -> None:
 
 def _spread(values: tuple[float, float, float]) -> str:
     low, middle, high = values
-    return f"{middle:.3g} ({low:.3g}-{high:.3g})"
+    return f"{written(middle)} ({written(low)}-{written(high)})"
 
 
 def _print_verdicts(result: StudyResult) -> None:

@@ -11,6 +11,7 @@ from trundle.report.tables import (
     road_words,
     summary_rows,
     verdict_matrix,
+    written,
 )
 
 __all__ = [
@@ -27,4 +28,5 @@ __all__ = [
     "write_mitigation_report",
     "write_record_report",
     "write_report",
+    "written",
 ]

@@ -10,6 +10,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from trundle.criteria import Verdict
 from trundle.report.canvas import Picture
+from trundle.report.tables import written
 from trundle.signals import nominal_frequency
 
 __all__ = ["embedded", "template"]
@@ -24,7 +25,7 @@ def template(name: str) -> Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["sig"] = lambda value, digits=3: f"{value:.{digits}g}"
+    environment.filters["sig"] = written
     environment.filters["rank"] = _rank
     environment.filters["between"] = _between
     environment.filters["hertz"] = _hertz
@@ -45,8 +46,10 @@ def embedded(picture: Picture, figures: Path) -> dict[str, str]:
 def _between(verdict: Verdict) -> str:
     """Write a margin with its interval."""
     low, high = verdict.interval
-    known = np.isfinite(low) and np.isfinite(high)
-    return f"{verdict.margin:.3g}" + (f" ({low:.3g}-{high:.3g})" if known else "")
+    if not np.isfinite(low) or not np.isfinite(high):
+        return f"{verdict.margin:.3g}"
+    between = f"{low:.3g}-{high:.3g}" if low > 0.0 else f"at most {high:.3g}"
+    return f"{verdict.margin:.3g} ({between})"
 
 
 def _hertz(f: float) -> str:

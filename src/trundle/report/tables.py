@@ -29,6 +29,7 @@ __all__ = [
     "summary_rows",
     "truncation_rows",
     "verdict_matrix",
+    "written",
 ]
 
 Range = tuple[float, float, float]
@@ -143,6 +144,12 @@ class BoundRow:
 def _range(values: np.ndarray, unit: float) -> Range:
     low, middle, high = np.percentile(values, [5.0, 50.0, 95.0]) / unit
     return float(low), float(middle), float(high)
+
+
+def written(value: float, digits: int = 3) -> str:
+    """Write a number with so many digits as people do: 1320, not 1.32e+03."""
+    short = float(f"{value:.{digits}g}")
+    return f"{short:.0f}" if 10.0**digits <= abs(short) < 1e6 else f"{value:.{digits}g}"
 
 
 def summary_rows(result: StudyResult) -> list[SummaryRow]:

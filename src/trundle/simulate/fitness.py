@@ -121,7 +121,8 @@ def _truncation(method: Interaction) -> list[FitnessWarning]:
         FitnessWarning(
             subject="modal truncation",
             message=f"modes above {method.integration.f_max:g} Hz are left out; they follow the "
-            "wheels without delay (static residual flexibility), not with their own resonance",
+            "wheels without delay (static residual flexibility), not with their own resonance: "
+            "bands within a third of an octave of it were up to 30 % off on the reference unit",
         )
     ]
 

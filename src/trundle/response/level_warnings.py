@@ -12,6 +12,7 @@ from trundle.signals import Averaging, level_scatter, nominal_frequency
 __all__ = ["few_runs_warnings", "level_warnings"]
 
 _TIME = {"max_1s": 1.0, "slow": 1.0, "fast": 0.125}  # s: window or time constant
+_STRONG = {"max_1s": 1.0, "slow": 3.0, "fast": 0.5}  # s: that motion must last, see Notes
 _BANDS = 10.0 ** np.array([0.0, 0.9, 1.9])  # Hz: spoken of
 _ENVELOPE = np.sqrt(4.0 / np.pi - 1.0)  # scatter of the amplitude of a narrow band (Rayleigh)
 _MANY = 30  # runs whose scatter is itself known within about 15 %
@@ -31,8 +32,15 @@ def level_warnings(
         Length of the record [s].
     levels : BandSpectra, optional
         Levels of many runs, whose scatter is said; without them, or with few, that of steady
-        Gaussian noise at one time is: by rule ``slow`` a passage of a second or two scatters by up
-        to a fifth more, and the largest of a long record by as little as a quarter as much.
+        Gaussian noise at one time is.
+
+    Notes
+    -----
+    The scatter of steady noise is a limit, within 15 %, for motion that stays above half its
+    greatest size for 1 s (3 s by rule ``slow``, 0.5 s by ``fast``). Shorter events have less to
+    average over: a burst of half a second in all scatters by up to 2.8 times as much, and one
+    shorter than half a period of the band by more than an envelope's 52 %. The largest level of a
+    long record scatters by as little as a quarter as much.
     """
     if averaging == "event":
         message = (
@@ -41,9 +49,12 @@ def level_warnings(
         )
         return (FitnessWarning(subject="averaging", message=message),)
     if levels is not None and len(levels.values) >= _MANY:
-        text, mid_band, scatter = "over the runs levels", levels.mid_band, _over_runs(levels)
+        text, beyond = "over the runs levels scatter by", ""
+        mid_band, scatter = levels.mid_band, _over_runs(levels)
     else:
-        text, mid_band = "a level of random motion", _BANDS
+        lasting = f"random motion that stays strong for {_STRONG[averaging]:g} s"
+        text = f"a level of {lasting} scatters by up to about"
+        beyond, mid_band = "; of a shorter event, by more", _BANDS
         # the largest of all times rides on a crest, never between two
         scatter = np.minimum(
             level_scatter(_BANDS, _TIME[averaging], exponential=averaging != "max_1s"), _ENVELOPE
@@ -55,9 +66,8 @@ def level_warnings(
     }
     if not found:
         return ()
-    verb = "scatter by" if text.endswith("s") else "scatters by up to about"
     sizes = ", ".join(f"{100.0 * value:.0f} % at {name}" for name, value in found.items())
-    message = f"one event is one sample: averaged by rule {averaging}, {text} {verb} {sizes}"
+    message = f"one event is one sample: averaged by rule {averaging}, {text} {sizes}{beyond}"
     return (FitnessWarning(subject="scatter", message=message),)
 
 

@@ -96,5 +96,7 @@ def test_the_reading_gives_decoupled_far_above_coupled_on_three_roads():
     }
     for decoupled, coupled in found.values():
         assert decoupled[0] > 3.0 * coupled[0]
-    velocities = 1e6 * np.array(found["rear"])[:, 1]
-    np.testing.assert_allclose(velocities, [108.8, 49.4], rtol=0.15)
+    # the floor is a stand-in: levels within a quarter, their proportion closer
+    decoupled, coupled = 1e6 * np.array(found["rear"])[:, 1]
+    np.testing.assert_allclose([decoupled, coupled], [108.8, 49.4], rtol=0.25)
+    assert decoupled / coupled == pytest.approx(108.8 / 49.4, rel=0.15)

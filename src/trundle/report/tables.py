@@ -247,11 +247,19 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
     printed accelerations are sums, the printed velocities nearer to the other.
     """
     study = result.study
-    printed_cases = {row.case for row in study.printed}
+    named = {row.case for row in study.printed}
+    # a bound is of the published vehicle, whatever else drives beside it
+    theirs = {
+        study.drives[route].vehicle.name
+        for case in study.cases
+        if case.name in named
+        for route in case.routes
+    }
     singles = [
         case.name
         for case in study.cases
-        if len(case.routes) == 1 and (case.name in printed_cases or not printed_cases)
+        if len(case.routes) == 1
+        and (not theirs or study.drives[case.routes[0]].vehicle.name in theirs)
     ]
     many = [case.name for case in study.cases if len(case.routes) > 1]
     rows = []

@@ -19,6 +19,8 @@ from trundle.study.run import StudyResult
 
 __all__ = ["print_result"]
 
+_TOGETHER = 6  # columns of verdicts beside each other; more do not fit a screen
+
 
 def print_result(result: StudyResult) -> None:
     """Print the tables of a finished study."""
@@ -126,19 +128,15 @@ def _print_verdicts(result: StudyResult) -> None:
     assessment = result.study.assessment
     if assessment is None:
         return
-    print_table(
+    title = (
         f"Verdict on vertical motion at {assessment.percentile:g} % of the runs, averaging "
-        f"{assessment.averaging}; margin = limit / level in the bands computed and excited; "
-        f"road {', '.join(road_words(result.study))}",
-        ("criterion", *columns),
-        (
-            (
-                title,
-                *(_outcome(v) for v in verdicts),
-            )
-            for title, verdicts in matrix
-        ),
+        f"{assessment.averaging}; margin = limit / level in the bands computed and excited"
     )
+    for first in range(0, len(columns), _TOGETHER):
+        some = slice(first, first + _TOGETHER)
+        rows = ((name, *(_outcome(v) for v in verdicts[some])) for name, verdicts in matrix)
+        print_table(title if first == 0 else "and", ("criterion", *columns[some]), rows)
+    print(f"road {'; '.join(road_words(result.study))}")
     reasons = (r for _, vs in matrix for v in vs if v.status == "not assessed" for r in v.reasons)
     for reason in dict.fromkeys(reasons):
         print(f"not assessed: {reason}")

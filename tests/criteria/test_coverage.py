@@ -27,7 +27,7 @@ def crossing(n_max=2.83):
 
 
 def runs(n_max=2.83, duration=None):
-    method = Coupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.05))
+    method = Coupled(integration=Modal(f_max=112.0, dt=0.005), damping=ModalRatio(ratio=0.05))
     return ensemble(
         small_floor(mesh_size=1.5), crossing(n_max), method=method, points={"p": (6.0, 5.0)},
         n_runs=3, seed=1, duration=duration,

@@ -62,7 +62,7 @@ def assert_levels(found, expected):
 @pytest.mark.parametrize("kind", [Coupled, Decoupled])
 def test_a_map_is_what_histories_at_its_places_give(kind):
     """20 random nodes, run by run, to 1e-6; quicker, the largest second within 1.5 %."""
-    method = kind(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.08))
+    method = kind(integration=Modal(f_max=112.0, dt=0.005), damping=ModalRatio(ratio=0.08))
     prepared = prepared_floor(method)
     nodes, points = random_nodes(prepared.floor, 20)
     settings = {"method": method, "points": points, "duration": DURATION}
@@ -91,7 +91,7 @@ def test_a_map_is_what_histories_at_its_places_give(kind):
 
 def test_a_map_of_a_floor_that_rings_long_is_what_histories_give():
     """0.1 % damping rings for minutes; what is left must not come round to the record's start."""
-    method = Coupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.001))
+    method = Coupled(integration=Modal(f_max=112.0, dt=0.005), damping=ModalRatio(ratio=0.001))
     prepared = prepared_floor(method)
     nodes, points = random_nodes(prepared.floor, 5)
     settings = {"method": method, "points": points, "duration": DURATION}
@@ -105,7 +105,7 @@ def test_a_map_of_a_floor_that_rings_long_is_what_histories_give():
 
 
 def test_single_precision_keeps_four_digits():
-    method = Coupled(integration=Modal(f_max=90.0, dt=0.005))
+    method = Coupled(integration=Modal(f_max=112.0, dt=0.005))
     prepared = prepared_floor(method)
     nodes, points = random_nodes(prepared.floor, 5)
     layout = lay_out(prepared, way(), method=method, points=points, duration=DURATION)
@@ -126,7 +126,7 @@ def test_what_cannot_be_mapped_is_refused():
     with pytest.raises(InputError, match="Modal"):
         lay_out_places(prepared, layout, places)
     car = replace(way(StaticStart(exit_length=1.0)), vehicle=sprung_mass(mass=1e4, stiffness=1e6))
-    modal = Coupled(integration=Modal(f_max=90.0, dt=0.005))
+    modal = Coupled(integration=Modal(f_max=112.0, dt=0.005))
     prepared = prepared_floor(modal)
     layout = lay_out(prepared, car, method=modal, **settings)
     with pytest.raises(InputError, match="at rest"):
@@ -148,8 +148,8 @@ def test_a_floor_of_one_mode_has_the_class_of_its_shape_at_every_node():
         ),
         mesh_size=0.5,
     )  # fmt: skip
-    method = Decoupled(integration=Modal(f_max=90.0, dt=0.005, residual=False))
-    modes = natural_modes(floor.mass, floor.stiffness, f_max=90.0)
+    method = Decoupled(integration=Modal(f_max=112.0, dt=0.005, residual=False))
+    modes = natural_modes(floor.mass, floor.stiffness, f_max=112.0)
     one = replace(
         modes, omega=modes.omega[:1], shapes=modes.shapes[:, :1], residuals=modes.residuals[:1]
     )

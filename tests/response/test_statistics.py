@@ -238,7 +238,7 @@ def test_what_cannot_have_exact_statistics_is_refused(layout):
     method = Coupled(integration=Modal(f_max=60.0, dt=0.01))
     with pytest.raises(InputError, match="no variance"):
         next(harmonics(lay_out(floor, smooth, method=method, points=POINTS)))
-    slow = Coupled(integration=Modal(f_max=60.0, dt=0.1))
+    slow = Coupled(integration=Modal(f_max=60.0, dt=0.04))
     with pytest.raises(InputError, match="time step of at most"):
         next(harmonics(lay_out(floor, way, method=slow, points=POINTS)))
 

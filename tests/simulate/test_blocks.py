@@ -168,7 +168,7 @@ def test_single_precision_keeps_four_digits(kind):
     settings = {"points": POINTS, "n_runs": 3, "seed": 4, "duration": 3.1}
     double, single = (
         ensemble(floor, way(), method=kind(integration=step), **settings)
-        for step in (Modal(f_max=90.0, dt=0.005), Modal(f_max=90.0, dt=0.005, single=True))
+        for step in (Modal(f_max=112.0, dt=0.005), Modal(f_max=112.0, dt=0.005, single=True))
     )
     for name in ("displacement", "velocity", "acceleration", "contact_forces"):
         apart = difference(getattr(single, name), getattr(double, name))

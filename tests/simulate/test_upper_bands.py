@@ -45,7 +45,7 @@ def test_forces_of_a_sine_road_are_those_of_the_transfer_function(make, f):
     )  # fmt: skip
     way = Crossing(vehicle, Route.straight((0, 0), (40, 0), speed=SPEED), road, run_in=80.0)
     _, forces = contact_forces(
-        way, integration=Modal(f_max=90.0, dt=0.005), n_runs=1, seed=0, duration=9.0
+        way, integration=Modal(f_max=112.0, dt=0.005), n_runs=1, seed=0, duration=9.0
     )
     dynamic = (forces[0] - vehicle.static_forces)[200:1700]
     expected = 1e-4 * np.abs(vehicle.contact_force_transfer(np.array([f]), speed=SPEED)[0])
@@ -64,7 +64,7 @@ def test_levels_at_the_production_step_are_those_of_a_tenth_of_it(kind):
     )  # fmt: skip
     coarse, fine = (
         ensemble(
-            floor, way, method=kind(integration=Modal(f_max=90.0, dt=dt)), n_runs=4, seed=1,
+            floor, way, method=kind(integration=Modal(f_max=112.0, dt=dt)), n_runs=4, seed=1,
             points={"a": (3.1, 3.3), "b": (9.0, 4.4)}, duration=8.0,
         )
         for dt in (0.005, 0.0005)

@@ -48,6 +48,8 @@ def test_what_another_study_left_changes_nothing(folder, counted):
     assert counted == [30.0, 40.0, 30.0]
     assert (beside.f_max, beside.n_modes) == (30.0, alone.n_modes)
     np.testing.assert_array_equal(alone.shapes, beside.shapes)
+    modes_of(floor, f_max=40.0)
+    assert counted == [30.0, 40.0, 30.0]  # neither took the other's place
 
 
 @pytest.mark.parametrize("spoil", ["cut", "empty", "foreign"])

@@ -44,7 +44,7 @@ def test_weightings(record, name):
 
 def test_a_map_against_histories(record):
     """20 random nodes, 3 runs: largest difference of any level from that of a history."""
-    method = Coupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.08))
+    method = Coupled(integration=Modal(f_max=112.0, dt=0.005), damping=ModalRatio(ratio=0.08))
     prepared = prepare(small_floor(mesh_size=1.5), method.integration, method.damping)
     way = Crossing(
         container_truck_40ft(), Route.straight((0.0, 3.0), (12.0, 3.0), speed=7.0),

@@ -245,7 +245,10 @@ def _not_shown(missing: tuple[float, ...]) -> tuple[str, ...]:
     if not missing:
         return ()
     names = ", ".join(f"{f:g}" for f in missing[:4]) + (" ..." if len(missing) > 4 else "")
-    return (f"{names} Hz are not shown: shorten dt or raise f_max, if bands reach that far at all",)
+    return (
+        f"{names} Hz are not shown: shorten dt, or raise f_max to 1.25 times the end of the "
+        "highest, if bands reach that far at all",
+    )
 
 
 def _interval(values: Array, percentile: float, limit: float) -> tuple[float, float]:

@@ -6,7 +6,7 @@ Large sparse systems are taken slice by slice (`dynamics.lanczos`), small ones w
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -57,6 +57,20 @@ class Modes:
     def n_modes(self) -> int:
         """Number of modes."""
         return len(self.omega)
+
+    def below(self, f: float) -> Modes:
+        """Return the modes below a frequency [Hz], at most `f_max`."""
+        fewer = self.first(int(np.searchsorted(self.frequencies, f)))
+        return replace(fewer, f_max=min(f, self.f_max))
+
+    def first(self, n_modes: int) -> Modes:
+        """Return the first modes, with the same `f_max`."""
+        return replace(
+            self,
+            omega=self.omega[:n_modes],
+            shapes=self.shapes[:, :n_modes],
+            residuals=self.residuals[:n_modes],
+        )
 
 
 def count_modes_below(

@@ -147,9 +147,9 @@ class ModalRecursion:
         phi, start, end = first_order_hold(state_matrix, unit, dt)
         self.phi, self.from_start, self.from_end = phi, start[:, :, 0], end[:, :, 0]
 
-    def first(self, n_modes: int) -> ModalRecursion:
-        """Return the steps of the first modes alone."""
+    def part(self, modes: slice) -> ModalRecursion:
+        """Return the steps of some modes alone."""
         fewer = copy(self)
         for name in ("square", "double", "phi", "from_start", "from_end"):
-            setattr(fewer, name, getattr(self, name)[:n_modes])
+            setattr(fewer, name, getattr(self, name)[modes])
         return fewer

@@ -11,6 +11,7 @@ from trundle.simulate.ensemble import (
     ensemble,
     runs_with_mean,
 )
+from trundle.simulate.fitness import resolved_to
 from trundle.simulate.harmonics import (
     Harmonics,
     Waves,
@@ -57,6 +58,7 @@ __all__ = [
     "place_spectra",
     "place_waves",
     "prepare",
+    "resolved_to",
     "runs_with_mean",
     "truncation_change",
 ]

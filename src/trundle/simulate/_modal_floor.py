@@ -65,7 +65,7 @@ class ModalFloor:
     def with_first(self, n_modes: int) -> ModalFloor:
         """Return the floor in its first modes; the others answer statically if any do."""
         fewer = self.for_one_drive()
-        fewer.n_modes, fewer.propagator = n_modes, self.propagator.first(n_modes)
+        fewer.n_modes, fewer.propagator = n_modes, self.propagator.part(slice(n_modes))
         fewer.points = np.ascontiguousarray(self.points[:, :n_modes])
         fewer._square = self._square[:n_modes]
         fewer.route_shapes = np.ascontiguousarray(self.route_shapes[:, :n_modes])

@@ -21,6 +21,7 @@ from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import REACH, differentiator, image_filters, restoring_filter
 from trundle.route import ContactRows
+from trundle.simulate._followers import Followers
 from trundle.simulate._march import Record
 from trundle.simulate._modal_floor import ModalFloor
 
@@ -50,7 +51,11 @@ class PointFilters:
     taps: Float[Array, "3 taps points dofs"]
 
 
-def point_filters(floor: ModalFloor, residual: Float[Array, "points dofs"] | None) -> PointFilters:
+def point_filters(
+    floor: ModalFloor,
+    residual: Float[Array, "points dofs"] | None,
+    followers: Followers | None = None,
+) -> PointFilters:
     """Form the filters of a floor in its modes.
 
     Parameters
@@ -59,6 +64,8 @@ def point_filters(floor: ModalFloor, residual: Float[Array, "points dofs"] | Non
         The floor under the wheels.
     residual : ndarray of float or None, shape (n_points, n_dofs)
         Static flexibility of the modes left out, at the points by the route's dofs [m/N].
+    followers : Followers, optional
+        Modes that are not stepped, at the same points and dofs.
     """
     images, shapes = image_filters(floor.propagator), floor.route_shapes
     read = images[:, :, None, :] * floor.points  # (3, taps, points, modes)
@@ -68,6 +75,8 @@ def point_filters(floor: ModalFloor, residual: Float[Array, "points dofs"] | Non
         for order in (1, 2):
             rate = differentiator(order)[:, None, None] / floor.dt**order
             taps[order] += rate * residual
+    if followers is not None:
+        taps += followers.taps()
     return PointFilters(rows=floor.rows, dofs=floor.rows.used_dofs(), taps=taps)
 
 

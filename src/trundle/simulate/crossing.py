@@ -124,7 +124,7 @@ class Decoupled:
         Interpolation of the load between nodes.
     """
 
-    integration: Integration = field(default_factory=lambda: Modal(f_max=90.0, dt=0.005))
+    integration: Integration = field(default_factory=lambda: Modal(f_max=112.0, dt=0.005))
     damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
     contact: ContactShape = field(default_factory=Hermite)
 
@@ -145,7 +145,7 @@ class Coupled:
     `Decoupled`.
     """
 
-    integration: Integration = field(default_factory=lambda: Modal(f_max=90.0, dt=0.005))
+    integration: Integration = field(default_factory=lambda: Modal(f_max=112.0, dt=0.005))
     damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
     contact: ContactShape = field(default_factory=Hermite)
 

@@ -26,6 +26,7 @@ from trundle.errors import FitnessWarning, InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor, RigidGround
+from trundle.simulate._followers import Followers
 from trundle.simulate._given_road import given_road_doubts
 from trundle.simulate._march import (
     ContactLaw,
@@ -74,6 +75,8 @@ class Layout:
         The floor under the wheels.
     residual : ndarray or None, shape (n_points, n_dofs)
         Static flexibility of the modes left out, at the points by the route's dofs [m/N].
+    followers : Followers or None
+        Modes above half the sampling frequency, which are not stepped.
     filters : PointFilters or None
         What completes the motion at the points of a floor in its modes.
     """
@@ -85,6 +88,7 @@ class Layout:
     timeline: Timeline
     floor: ModalFloor | FullFloor | None
     residual: Float[Array, "points dofs"] | None
+    followers: Followers | None
     filters: PointFilters | None
 
     @property
@@ -147,14 +151,19 @@ class Layout:
         n_modes = floor.count_below(f)
         if n_modes == 0:
             raise InputError(f"no mode lies below {f:g} Hz; raise it")
-        residual = None if self.residual is None else self.residual + floor.static_share(n_modes)
+        residual, followers = self.residual, self.followers
+        if residual is not None:
+            residual = residual + floor.static_share(n_modes)
+            residual += 0.0 if followers is None else followers.static_share_above(f)
+        followers = None if followers is None else followers.below(f)
         fewer = floor.with_first(n_modes)
         return replace(
             self,
             method=replace(self.method, integration=replace(modal, f_max=min(f, modal.f_max))),
             floor=fewer,
             residual=residual,
-            filters=point_filters(fewer, residual),
+            followers=followers,
+            filters=point_filters(fewer, residual, followers),
         )
 
     def over(
@@ -263,6 +272,7 @@ def lay_out(
     residual = None
     if floor.modes is not None and floor.residual:
         residual = point_residual(floor.flexibility, floor.modes, reader, rows.used_dofs())
+    followers = _followers(floor, reader, rows)
     under_wheels = _floor_under_wheels(floor, rows, timeline, reader, coupled=coupled)
     layout = Layout(
         crossings=many,
@@ -272,8 +282,11 @@ def lay_out(
         timeline=timeline,
         floor=under_wheels,
         residual=residual,
+        followers=followers,
         filters=(
-            point_filters(under_wheels, residual) if isinstance(under_wheels, ModalFloor) else None
+            point_filters(under_wheels, residual, followers)
+            if isinstance(under_wheels, ModalFloor)
+            else None
         ),
     )
     if coupled and isinstance(under_wheels, ModalFloor):
@@ -296,6 +309,7 @@ def lay_out_on_rigid_ground(
         timeline=timeline_of((crossing,), integration.dt, duration),
         floor=None,
         residual=None,
+        followers=None,
         filters=None,
     )
 
@@ -312,8 +326,8 @@ def _floor_under_wheels(
     if isinstance(prepared.propagator, ModalRecursion):
         assert prepared.modes is not None  # a modal recursion is only made with modes
         return ModalFloor(
-            prepared.modes,
-            prepared.propagator,
+            prepared.modes.first(prepared.n_stepped),
+            prepared.propagator.part(slice(prepared.n_stepped)),
             rows,
             speed,
             points,
@@ -327,6 +341,24 @@ def _floor_under_wheels(
         points,
         flexibility=prepared.flexibility,
         coupled=coupled,
+    )
+
+
+def _followers(
+    prepared: PreparedFloor, reader: SparseMatrix, rows: ContactRows
+) -> Followers | None:
+    """Return the modes that are not stepped, at some points and the route's dofs."""
+    modes, propagator = prepared.modes, prepared.propagator
+    if modes is None or not isinstance(propagator, ModalRecursion):
+        return None
+    rest = slice(prepared.n_stepped, None)
+    if rest.start == modes.n_modes:
+        return None
+    shapes = modes.shapes[:, rest]
+    return Followers(
+        modes=propagator.part(rest),
+        points=np.asarray(reader @ shapes),
+        route_shapes=shapes[rows.used_dofs()],
     )
 
 

@@ -22,6 +22,7 @@ from trundle._typing import Array
 from trundle.dynamics import (
     ModalRecursion,
     differentiator,
+    following_filters,
     image_filters,
     responses_of,
     restoring_filter,
@@ -134,7 +135,11 @@ def _responses(
     shapes = places.route_shapes.astype(kind, copy=False)
     dt, lines = places.dt, places.frequencies
     shape = (len(lines), len(read), shapes.shape[1])
-    images = image_filters(places.propagator)[1:]
+    n_stepped = places.n_stepped
+    steps, followers = (
+        places.propagator.part(part) for part in (slice(n_stepped), slice(n_stepped, None))
+    )
+    images, followed = image_filters(steps)[1:], following_filters(followers)[1:]
     kept = restoring_filter()[:, None]
     rates = [differentiator(order)[:, None] / dt**order for order in (1, 2)]
     found = tuple(np.empty(shape, np.result_type(kind, 1j)) for _ in range(1 + acceleration))
@@ -143,10 +148,14 @@ def _responses(
         """Form the responses at some lines."""
         part = slice(first, first + _LINES)
         turn = 2.0 * np.pi * lines[part] * dt
-        stepped = _modal_motion(places.propagator, np.exp(1j * turn)[:, None])
+        stepped = _modal_motion(steps, np.exp(1j * turn)[:, None])
         restored = responses_of(kept, turn)
-        for out, modal, image, rate in zip(found, stepped, images, rates, strict=False):
-            whole = restored * modal + responses_of(image, turn)
+        for out, modal, image, follow, rate in zip(
+            found, stepped, images, followed, rates, strict=False
+        ):
+            whole = np.hstack(
+                [restored * modal + responses_of(image, turn), responses_of(follow, turn)]
+            )
             for take in (np.real, np.imag):
                 driven = take(whole).astype(kind)[:, :, None] * shapes
                 take(out)[part] = read @ driven  # both are views

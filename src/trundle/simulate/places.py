@@ -54,6 +54,8 @@ class PlaceResponses:
         Static flexibility of the modes left out [m/N].
     propagator : ModalRecursion
         Steps of the modes.
+    n_stepped : int
+        How many of them are stepped; the others follow the forces (`following_filters`).
     single : bool
         Whether single precision is enough.
     """
@@ -67,6 +69,7 @@ class PlaceResponses:
     place_shapes: Float[Array, "places modes"]
     residual: Float[Array, "places dofs"] | None
     propagator: ModalRecursion
+    n_stepped: int
     single: bool
 
     @property
@@ -100,11 +103,12 @@ def lay_out_places(
     InputError
         A floor that is not stepped in its modes, or a crossing that starts on it.
     """
-    floor = layout.floor
+    floor, propagator = layout.floor, prepared.propagator
     if not isinstance(floor, ModalFloor) or prepared.modes is None:
         raise InputError("a map needs a floor in its modes: choose Modal")
     if any(isinstance(crossing.entry, StaticStart) for crossing in layout.crossings):
         raise InputError("a map needs a floor at rest at time 0: let the vehicle drive in or ramp")
+    assert isinstance(propagator, ModalRecursion)  # a floor with modes has no other
     rows, modes = floor.rows, prepared.modes
     kept = np.abs(rows.value) > _NOUGHT * np.abs(rows.value).max(initial=0.0)
     used = np.unique(rows.dofs[kept])
@@ -112,7 +116,7 @@ def lay_out_places(
     reading = contact_rows(prepared.floor, places, along_x, shape=Hermite())
     reader = reading.matrix(reading.value)
     residual = None
-    place_shapes = np.ascontiguousarray(reader @ modes.shapes[:, : floor.n_modes])
+    place_shapes = np.ascontiguousarray(reader @ modes.shapes)
     if prepared.residual:
         residual = np.empty((len(places), len(used)))
         for part, unit in unit_loads(used, prepared.floor.n_dofs):
@@ -129,7 +133,8 @@ def lay_out_places(
         route_shapes=np.ascontiguousarray(modes.shapes[used].T),
         place_shapes=place_shapes,
         residual=residual,
-        propagator=floor.propagator,
+        propagator=propagator,
+        n_stepped=floor.n_modes,
         single=single,
     )
 

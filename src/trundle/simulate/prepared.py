@@ -41,9 +41,9 @@ class PreparedFloor:
     damping : Rayleigh or ModalRatio
         Damping it is prepared for.
     propagator : NewmarkPropagator or ModalRecursion
-        The scheme with its coefficients.
+        The scheme with its coefficients, for all modes.
     modes : Modes or None
-        Natural modes, for `Modal`; a full floor has none.
+        Natural modes below `f_max`, for `Modal`; a full floor has none.
     flexibility : StaticFlexibility
         Static deflections, for starts at rest and for the modes left out.
     """
@@ -54,6 +54,21 @@ class PreparedFloor:
     propagator: NewmarkPropagator | ModalRecursion
     modes: Modes | None
     flexibility: StaticFlexibility
+
+    @property
+    def n_stepped(self) -> int:
+        """How many of the modes are stepped; those after them follow the forces.
+
+        Modes below half the sampling frequency must be, and those that creep below it: damped
+        beyond critical they come back at ``omega (zeta - sqrt(zeta^2 - 1))``.
+        """
+        if not isinstance(self.propagator, ModalRecursion):
+            return 0
+        omega = np.sqrt(self.propagator.square)
+        ratio = np.maximum(1.0, self.propagator.double / (2.0 * omega))
+        slowest = omega * (ratio - np.sqrt(ratio**2 - 1.0))
+        must = np.flatnonzero(slowest < np.pi / self.propagator.dt)
+        return int(must[-1]) + 1 if len(must) else 0
 
     @property
     def residual(self) -> bool:
@@ -98,7 +113,7 @@ def prepare(
             modes = natural_modes(
                 floor.mass, floor.stiffness, f_max=integration.f_max, progress=progress
             )
-        modes = _below(modes, integration.f_max)
+        modes = _below(modes, integration)
         ratios = damping.ratios(modes.omega)
         propagator = ModalRecursion(modes.omega, ratios, integration.dt)
         return PreparedFloor(
@@ -127,13 +142,14 @@ def prepare(
     )
 
 
-def _below(modes: Modes, f_max: float) -> Modes:
-    keep = int(np.searchsorted(modes.frequencies, f_max))
-    if keep == 0:
+def _below(modes: Modes, integration: Modal) -> Modes:
+    """Return the modes asked for, of which at least one must be stepped."""
+    f_max, nyquist = integration.f_max, 0.5 / integration.dt
+    kept = modes.below(f_max)
+    if kept.n_modes == 0:
         raise InputError(f"no mode lies below f_max = {f_max:g} Hz; raise f_max")
-    return Modes(
-        omega=modes.omega[:keep],
-        shapes=modes.shapes[:, :keep],
-        residuals=modes.residuals[:keep],
-        f_max=f_max,
-    )
+    if kept.frequencies[0] >= nyquist:
+        raise InputError(
+            f"no mode lies below {nyquist:g} Hz, half the sampling frequency; shorten dt"
+        )
+    return kept

@@ -125,15 +125,6 @@ def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[
         if plan is None:
             continue
         integration = plan.interaction.integration
-        nyquist = 0.5 / integration.dt
-        if isinstance(integration, Modal) and integration.f_max > nyquist * (1 + 1e-9):
-            yield Problem(
-                place=f"method[{i + 1}].dt",
-                value=f"{1e3 * integration.dt:g} ms",
-                rule=f"modes to {integration.f_max:g} Hz need a time step of at most "
-                f"{500.0 / integration.f_max:g} ms (two samples a period)",
-                remedy="shorten dt, or lower f_max",
-            )
         duration = None if file.general is None else file.general.duration
         if duration is not None and integration.dt > duration / 10.0:
             yield Problem(

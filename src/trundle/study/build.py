@@ -305,7 +305,7 @@ class _Builder:
                     place=f"{place}.f_max",
                     value="nothing",
                     rule="modal superposition needs the frequency up to which modes are kept",
-                    remedy='add f_max = "40 Hz"; twice the top frequency of interest is good',
+                    remedy='add f_max = "112 Hz": 1.25 times the end of the 80 Hz band',
                 )
             )
             return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from jaxtyping import Float
@@ -81,6 +82,7 @@ def assess_reduced(
     top: float,
     events: float = 1.0,
     coverage: Coverage | None = None,
+    axes: Sequence[str] | None = None,
 ) -> tuple[Verdict, ...]:
     """Hold what was kept of every run against criteria.
 
@@ -98,25 +100,30 @@ def assess_reduced(
         How many such events a vibration dose is for.
     coverage : Coverage, optional
         Which bands the road excites, and whether the vehicles have left; without it all do.
+    axes : sequence of {"vertical", "horizontal", ""}, optional
+        Directions of measured points; computed ones are vertical, and so is what is not known.
     """
     coverage = coverage or Coverage()
+    ways = axes or ("",) * len(reduced.spectra.point_names)
     within("percentile", percentile, 0.0, 100.0)
     many = (criteria,) if isinstance(criteria, Criterion) else tuple(criteria)
     verdicts = []
-    for i, point in enumerate(reduced.spectra.point_names):
+    for i, (point, way) in enumerate(zip(reduced.spectra.point_names, ways, strict=True)):
+        axis = way or "vertical"
         for criterion in many:
-            if criterion.axis == "horizontal":
-                verdicts.append(_not_computed(criterion, point, percentile))
-            elif criterion.quantity in BY_FREQUENCY:
+            if criterion.axis not in {axis, "each axis"}:
+                reason = f"the channel is {axis}" if axes else "horizontal motion is not computed"
+                verdicts.append(_of_another_axis(criterion, point, percentile, reason))
+                continue
+            if criterion.quantity in BY_FREQUENCY:
                 spectra = {"band_rms_velocity": reduced.spectra, **reduced.more}
                 one = spectra[criterion.quantity]
-                verdicts.append(_by_band(one, i, point, criterion, percentile, coverage=coverage))
+                verdict = _by_band(one, i, point, criterion, percentile, coverage=coverage)
             else:
                 values, times = _numbers(reduced, i, criterion, events)
                 reach = (top, coverage)
-                verdicts.append(
-                    _by_number(values, times, point, criterion, percentile, reach=reach)
-                )
+                verdict = _by_number(values, times, point, criterion, percentile, reach=reach)
+            verdicts.append(replace(verdict, axis=axis))
     return tuple(verdicts)
 
 
@@ -126,8 +133,8 @@ def best_class(verdicts: Sequence[Verdict]) -> str:
     return passed[-1] if passed else "none"
 
 
-def _not_computed(criterion: Criterion, point: str, percentile: float) -> Verdict:
-    """Return the verdict on horizontal motion, of which nothing is known."""
+def _of_another_axis(criterion: Criterion, point: str, percentile: float, reason: str) -> Verdict:
+    """Return the verdict by a limit on motion in another direction, of which nothing is known."""
     return Verdict(
         criterion=criterion,
         point=point,
@@ -136,7 +143,7 @@ def _not_computed(criterion: Criterion, point: str, percentile: float) -> Verdic
         unresolved=(),
         averaging=criterion.averaging,
         axis=criterion.axis,
-        reasons=("horizontal motion is not computed",),
+        reasons=(reason,),
     )
 
 

@@ -4,7 +4,7 @@ from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
 from trundle.response.floor_map import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
 from trundle.response.level_warnings import few_runs_warnings, level_warnings
-from trundle.response.measured import as_if_not_faded, runs_of_record, without_short_bands
+from trundle.response.measured import reduce_record
 from trundle.response.peaks import LargestValues
 from trundle.response.reduction import (
     Reduced,
@@ -29,7 +29,6 @@ __all__ = [
     "Reduced",
     "SpectrumQuantity",
     "UpperBounds",
-    "as_if_not_faded",
     "behind_isolators",
     "exact_statistics",
     "few_runs_warnings",
@@ -38,11 +37,10 @@ __all__ = [
     "level_warnings",
     "percentile_interval",
     "percentile_rank",
+    "reduce_record",
     "reduce_rougher",
     "reduce_runs",
-    "runs_of_record",
     "spectra_of",
     "upper_bounds",
     "velocity_spectra",
-    "without_short_bands",
 ]

@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
 
-from trundle.response.reduction import Reduced
-from trundle.response.spectra import BandSpectra
-from trundle.signals import Averaging, Record, lost_by_fading, motion_of, record_warnings
+from trundle.response.reduction import Reduced, reduce_runs
+from trundle.response.spectra import BandSpectra, SpectrumQuantity
+from trundle.signals import Averaging, Record, record_warnings, wide_motion_of
 from trundle.simulate import Runs
 
-__all__ = ["as_if_not_faded", "runs_of_record", "without_short_bands"]
+__all__ = ["reduce_record"]
 
 
-def runs_of_record(record: Record, *, high_pass: float = 0.5) -> Runs:
-    """Return a record as one run, its channels as points.
+def reduce_record(
+    record: Record,
+    *,
+    high_pass: float = 0.5,
+    averaging: Averaging = "max_1s",
+    quantities: Iterable[SpectrumQuantity] = (),
+) -> tuple[Runs, Reduced]:
+    """Return a record as one run, its channels as points, and its levels.
+
+    Bands of which the record holds fewer than 8 periods are not resolved.
 
     Parameters
     ----------
@@ -23,13 +32,16 @@ def runs_of_record(record: Record, *, high_pass: float = 0.5) -> Runs:
         The record.
     high_pass : float
         Frequency below which motion is taken for drift [Hz].
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule of the band levels.
+    quantities : iterable of SpectrumQuantity
+        Spectra wanted beside that of velocity.
     """
-    displacement, velocity, acceleration = (
-        np.ascontiguousarray(part.T)[None] for part in motion_of(record, high_pass=high_pass)
-    )
+    motion, seen = wide_motion_of(record, high_pass=high_pass)
+    displacement, velocity, acceleration = (np.ascontiguousarray(x.T)[None] for x in motion)
     n_steps, fs = velocity.shape[1], record.sampling_frequency
-    return Runs(
-        time=np.arange(n_steps) / fs,
+    wide = Runs(
+        time=(np.arange(n_steps) - seen.start) / fs,
         displacement=displacement,
         velocity=velocity,
         acceleration=acceleration,
@@ -41,9 +53,25 @@ def runs_of_record(record: Record, *, high_pass: float = 0.5) -> Runs:
         f_max=0.5 * fs,
         warnings=record_warnings(record),
     )
+    horizontal = [i for i, axis in enumerate(record.axes) if axis == "horizontal"]
+    reduced = reduce_runs(
+        wide, averaging=averaging, quantities=quantities, record=seen, horizontal=horizontal
+    )
+    return _seen(wide, seen), _without_short_bands(reduced, record)
 
 
-def without_short_bands(reduced: Reduced, record: Record) -> Reduced:
+def _seen(wide: Runs, seen: slice) -> Runs:
+    return replace(
+        wide,
+        time=wide.time[seen],
+        displacement=wide.displacement[:, seen],
+        velocity=wide.velocity[:, seen],
+        acceleration=wide.acceleration[:, seen],
+        contact_forces=wide.contact_forces[:, seen],
+    )
+
+
+def _without_short_bands(reduced: Reduced, record: Record) -> Reduced:
     """Return levels without those of bands of which the record holds fewer than 8 periods."""
 
     def held(spectra: BandSpectra) -> BandSpectra:
@@ -54,32 +82,3 @@ def without_short_bands(reduced: Reduced, record: Record) -> Reduced:
 
     more = {name: held(spectra) for name, spectra in reduced.more.items()}
     return replace(reduced, spectra=held(reduced.spectra), more=more)
-
-
-def as_if_not_faded(
-    reduced: Reduced, record: Record, averaging: Averaging, *, high_pass: float = 0.5
-) -> Reduced:
-    """Return averages over the record as they would be had it not been faded in and out.
-
-    Parameters
-    ----------
-    reduced : Reduced
-        Levels of the faded record.
-    record : Record
-        The record.
-    averaging : {"max_1s", "slow", "fast", "event"}
-        Averaging rule of the levels.
-    high_pass : float
-        Frequency below which motion is taken for drift [Hz].
-    """
-    rms, dose = lost_by_fading(record, high_pass=high_pass)
-    found = replace(reduced, rms_velocity=reduced.rms_velocity * rms, vdv=reduced.vdv * dose)
-    if averaging != "event":
-        return found
-
-    def louder(spectra: BandSpectra) -> BandSpectra:
-        """Return levels averaged over what was not faded."""
-        return replace(spectra, values=spectra.values * rms[:, None])
-
-    more = {name: louder(spectra) for name, spectra in found.more.items()}
-    return replace(found, spectra=louder(found.spectra), more=more)

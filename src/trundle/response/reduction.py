@@ -11,13 +11,15 @@ from scipy import stats
 
 from trundle._checks import within
 from trundle._typing import Array, ArrayLike
-from trundle.response.spectra import (
-    BandSpectra,
-    SpectrumQuantity,
-    spectra_of,
-    velocity_spectra,
+from trundle.response.spectra import BandSpectra, SpectrumQuantity, spectra_of
+from trundle.signals import (
+    BASE_ACCELERATION,
+    BASE_SIDEWAYS,
+    Averaging,
+    mtvv,
+    vibration_dose_value,
+    weight,
 )
-from trundle.signals import Averaging, mtvv, response_factor, vibration_dose_value, weight
 from trundle.simulate import MeanResponse, Runs
 
 __all__ = ["Reduced", "join", "percentile_interval", "reduce_rougher", "reduce_runs"]
@@ -40,9 +42,10 @@ class Reduced:
     more : mapping of str to BandSpectra
         Other spectra that were asked for, by their quantity.
     response_factor : ndarray of float, shape (n_runs, n_points)
-        Largest 1 s RMS of acceleration weighted by Wb, over 0.005 m/s2.
+        Largest 1 s RMS of acceleration weighted by Wb, over 0.005 m/s2; of sideways motion by Wd,
+        over 0.00357 m/s2.
     vdv : ndarray of float, shape (n_runs, n_points)
-        Vibration dose value of one event, weighted by Wb [m/s^1.75].
+        Vibration dose value of one event, weighted alike [m/s^1.75].
     peak_contact_force : ndarray of float, shape (n_runs, n_contacts)
         Largest contact force, static load included [N].
     tension : ndarray of bool, shape (n_runs, n_contacts)
@@ -61,7 +64,12 @@ class Reduced:
 
 
 def reduce_runs(
-    runs: Runs, *, averaging: Averaging = "max_1s", quantities: Iterable[SpectrumQuantity] = ()
+    runs: Runs,
+    *,
+    averaging: Averaging = "max_1s",
+    quantities: Iterable[SpectrumQuantity] = (),
+    record: slice | None = None,
+    horizontal: Sequence[int] = (),
 ) -> Reduced:
     """Reduce the histories of some runs.
 
@@ -73,19 +81,29 @@ def reduce_runs(
         Averaging rule of the band levels.
     quantities : iterable of SpectrumQuantity
         Spectra wanted beside that of velocity.
+    record : slice, optional
+        Steps that are looked at; those before and behind fill and empty the filters.
+    horizontal : sequence of int
+        Points that move sideways: weighted by Wd, and held against its base.
     """
-    size = np.abs(runs.acceleration)
-    fs = runs.sampling_frequency
-    felt = weight(np.moveaxis(runs.acceleration, 1, -1), fs, "Wb")
+    fs, seen = runs.sampling_frequency, record or slice(None)
+    size, time = np.abs(runs.acceleration[:, seen]), runs.time[seen]
+    moved, sideways = np.moveaxis(runs.acceleration, 1, -1), list(horizontal)
+    felt = weight(moved, fs, "Wb")
+    if sideways:
+        felt[:, sideways] = weight(moved[:, sideways], fs, "Wd")
+    felt = felt[..., seen]
+    base = np.full(len(runs.point_names), BASE_ACCELERATION)
+    base[sideways] = BASE_SIDEWAYS
     wanted: dict[SpectrumQuantity, None] = dict.fromkeys(quantities)
     wanted.pop("band_rms_velocity", None)
     return Reduced(
         peak_acceleration=size.max(axis=1),
-        peak_time=runs.time[size.argmax(axis=1)],
-        rms_velocity=runs.record_rms_velocity(),
-        spectra=velocity_spectra(runs, averaging=averaging),
-        more={name: spectra_of(runs, name, averaging=averaging) for name in wanted},
-        response_factor=response_factor(mtvv(felt, fs)),
+        peak_time=time[size.argmax(axis=1)],
+        rms_velocity=np.sqrt(np.mean(runs.velocity[:, seen] ** 2, axis=1)),
+        spectra=spectra_of(runs, "band_rms_velocity", averaging=averaging, record=record),
+        more={name: spectra_of(runs, name, averaging=averaging, record=record) for name in wanted},
+        response_factor=mtvv(felt, fs) / base,
         vdv=vibration_dose_value(felt, fs),
         peak_contact_force=runs.contact_forces.max(axis=1),
         tension=np.any(runs.contact_forces < 0.0, axis=1),

@@ -73,7 +73,11 @@ def velocity_spectra(runs: Runs, *, averaging: Averaging = "max_1s") -> BandSpec
 
 
 def spectra_of(
-    runs: Runs, quantity: SpectrumQuantity, *, averaging: Averaging = "max_1s"
+    runs: Runs,
+    quantity: SpectrumQuantity,
+    *,
+    averaging: Averaging = "max_1s",
+    record: slice | None = None,
 ) -> BandSpectra:
     """Form a spectrum of every run at every point.
 
@@ -85,6 +89,8 @@ def spectra_of(
         What is asked for.
     averaging : {"max_1s", "slow", "fast", "event"}
         Averaging rule of RMS values.
+    record : slice, optional
+        Steps that are looked at, see `signals.band_maxima`.
 
     Returns
     -------
@@ -94,7 +100,7 @@ def spectra_of(
     signal = np.moveaxis(getattr(runs, quantity.rpartition("_")[2]), 1, -1)
     fs = runs.sampling_frequency
     if quantity == "narrow_band_acceleration":
-        lines, values = amplitude_spectrum(signal, fs)
+        lines, values = amplitude_spectrum(signal[..., record or slice(None)], fs)
         frequencies, resolved = lines[1:], lines[1:] <= min(runs.f_max, 0.4 * fs)
         values, times = values[..., 1:], np.full_like(values[..., 1:], np.nan)
     else:
@@ -105,9 +111,9 @@ def spectra_of(
         if resolved.any():
             bands = frequencies[resolved]
             levels, when = (
-                band_peaks(signal, fs, bands)
+                band_peaks(signal, fs, bands, record=record)
                 if quantity == "band_peak_acceleration"
-                else band_maxima(signal, fs, bands, averaging=averaging)
+                else band_maxima(signal, fs, bands, averaging=averaging, record=record)
             )
             values[:, :, resolved] = np.moveaxis(levels, 0, -1)
             times[:, :, resolved] = np.moveaxis(when, 0, -1)

@@ -23,16 +23,12 @@ from trundle.signals.levels import (
     running_rms,
 )
 from trundle.signals.psd import amplitude_spectrum, welch_psd
-from trundle.signals.record import (
-    Record,
-    RecordQuantity,
-    doubtful_channels,
-    is_steady,
-    record_warnings,
-)
-from trundle.signals.record_motion import lost_by_fading, motion_of
+from trundle.signals.record import Axis, Record, RecordQuantity, axis_of, channel_fault
+from trundle.signals.record_doubts import doubtful_channels, record_warnings
+from trundle.signals.record_motion import motion_of, wide_motion_of
 from trundle.signals.weighting import (
     BASE_ACCELERATION,
+    BASE_SIDEWAYS,
     Weighting,
     crest_factor,
     mtvv,
@@ -44,9 +40,11 @@ from trundle.signals.weighting import (
 
 __all__ = [
     "BASE_ACCELERATION",
+    "BASE_SIDEWAYS",
     "HIGHEST_BAND",
     "LOWEST_BAND",
     "Averaging",
+    "Axis",
     "Isolation",
     "Isolator",
     "Record",
@@ -55,6 +53,7 @@ __all__ = [
     "Weighting",
     "amplitude_spectrum",
     "averaged_rms",
+    "axis_of",
     "band_delay",
     "band_edges",
     "band_filter",
@@ -62,13 +61,12 @@ __all__ = [
     "band_maxima",
     "band_peaks",
     "behind",
+    "channel_fault",
     "crest_factor",
     "doubtful_channels",
     "filter_bands",
     "filter_zero_phase",
-    "is_steady",
     "level_scatter",
-    "lost_by_fading",
     "mid_band_frequencies",
     "motion_of",
     "mtvv",
@@ -81,4 +79,5 @@ __all__ = [
     "weight",
     "weighting_response",
     "welch_psd",
+    "wide_motion_of",
 ]

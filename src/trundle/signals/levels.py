@@ -124,6 +124,7 @@ def band_maxima(
     *,
     averaging: Averaging = "max_1s",
     zero_phase: bool = False,
+    record: slice | None = None,
 ) -> tuple[Float[Array, "bands ..."], Float[Array, "bands ..."]]:
     """Return band levels as `band_levels` does, and when they occur.
 
@@ -139,6 +140,9 @@ def band_maxima(
         Rule, see `Averaging`.
     zero_phase : bool
         Filter without delay: by the magnitude of the same filter, so that energy is the same.
+    record : slice, optional
+        Samples that are looked at; those before and behind it fill and empty the filters. All
+        unless given.
 
     Returns
     -------
@@ -151,11 +155,13 @@ def band_maxima(
 
     def level(f: float) -> tuple[Array, Array]:
         """Return the level in one band, and its time."""
-        signal_and_tail = samples
+        padded = samples
         if averaging != "event":
-            ringing = max(_WINDOW, _PERIODS / f)
-            signal_and_tail = _faded_out(samples, sampling_frequency, ringing)
-        filtered = _filtered(signal_and_tail, sampling_frequency, f, zero_phase=zero_phase)
+            padded = _ringing_out(samples, sampling_frequency, f, record)
+        filtered = _filtered(padded, sampling_frequency, f, zero_phase=zero_phase)
+        if record is not None:
+            stop = record.stop if averaging == "event" else None
+            filtered = filtered[..., record.start : stop]
         rms, when = _largest(filtered, sampling_frequency, averaging)
         delay = 0.0 if zero_phase else band_delay(f, sampling_frequency)
         return rms, np.asarray(np.maximum(when - delay, 0.0))
@@ -169,16 +175,19 @@ def band_peaks(
     samples: Float[Array, "... steps"],
     sampling_frequency: float,
     mid_band: Float[Array, " bands"],
+    *,
+    record: slice | None = None,
 ) -> tuple[Float[Array, "bands ..."], Float[Array, "bands ..."]]:
     """Return the largest absolute value of each signal in each band, and when it occurs [s].
 
-    Behind the record the filters ring on as in `band_levels`.
+    Behind the record the filters ring on as in `band_levels`; `record` as in `band_maxima`.
     """
 
     def peak(f: float) -> tuple[Array, Array]:
         """Return the largest value in one band, and its time."""
-        padded = _faded_out(samples, sampling_frequency, max(_WINDOW, _PERIODS / f))
+        padded = _ringing_out(samples, sampling_frequency, f, record)
         size = np.abs(_filtered(padded, sampling_frequency, f, zero_phase=False))
+        size = size if record is None else size[..., record.start :]
         when = size.argmax(axis=-1) / sampling_frequency - band_delay(f, sampling_frequency)
         return np.asarray(size.max(axis=-1)), np.asarray(np.maximum(when, 0.0))
 
@@ -245,6 +254,17 @@ def _filtered(samples: Array, sampling_frequency: float, f: float, *, zero_phase
     if zero_phase:
         return filter_zero_phase(sos, samples, padding=round(_PERIODS / f * sampling_frequency))
     return np.asarray(signal.sosfilt(sos, samples, axis=-1))
+
+
+def _ringing_out(
+    samples: Array, sampling_frequency: float, f: float, record: slice | None
+) -> Array:
+    """Put behind a signal what a band's filter rings out in."""
+    ringing = max(_WINDOW, _PERIODS / f)
+    if record is None:
+        return _faded_out(samples, sampling_frequency, ringing)
+    rest = np.zeros((*samples.shape[:-1], round(ringing * sampling_frequency)))
+    return np.concatenate([samples, rest], axis=-1)
 
 
 def _faded_out(samples: Array, sampling_frequency: float, ringing: float) -> Array:

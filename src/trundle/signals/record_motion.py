@@ -9,26 +9,23 @@ from scipy.interpolate import make_lsq_spline
 
 from trundle._checks import within
 from trundle._typing import Array
-from trundle.signals.record import Record, is_steady
+from trundle.signals.beyond import carried_on
+from trundle.signals.record import Record
 
-__all__ = ["lost_by_fading", "motion_of"]
+__all__ = ["motion_of", "wide_motion_of"]
 
 _ORDER = 4  # of the high-pass filter
 _PERIODS = 8.0  # of the high-pass frequency, of rest behind the record
 _KNOTS = 2.5  # periods of the high-pass frequency between knots of the line that is taken off
-_EVENT = (1.0, 1.0 / 20.0)  # s of fading at both ends of an event, and share of it at most
-_STEADY = (12.0, 1.0 / 5.0)  # the same of steady motion: thrice what the lowest band takes
-_LOUD = 1.25  # times the record's RMS: an end that is louder is not steady
+_BEYOND = 4.0  # s that a record is carried on at either end: so long takes the lowest band's filter
 
 
-def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, Array]:
+def motion_of(
+    record: Record, *, high_pass: float = 0.5
+) -> tuple[
+    Float[Array, "channels steps"], Float[Array, "channels steps"], Float[Array, "channels steps"]
+]:
     """Return displacement, velocity and acceleration of a record, without drift.
-
-    A smooth line, of what is far slower than the high-pass, is taken off, and the record is faded
-    in and out. Then all is done in one step on its spectrum: integration by
-    ``1 / (i omega)``, and the magnitude of a Butterworth high-pass of order 4, without its delay.
-    Nothing is integrated in time, so nothing drifts; and nothing is integrated that was not
-    measured, as a record carried on beyond its ends would be.
 
     Parameters
     ----------
@@ -42,11 +39,43 @@ def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, 
     displacement, velocity, acceleration : ndarray of float, shape (n_channels, n_steps)
         Motion in SI units; displacement is the part above the high-pass alone.
     """
-    fs, n = record.sampling_frequency, record.samples.shape[1]
+    motion, seen = wide_motion_of(record, high_pass=high_pass)
+    displacement, velocity, acceleration = (part[:, seen] for part in motion)
+    return displacement, velocity, acceleration
+
+
+def wide_motion_of(
+    record: Record, *, high_pass: float = 0.5
+) -> tuple[tuple[Array, Array, Array], slice]:
+    """Return the motion of a record and of what it is carried on with, see `motion_of`.
+
+    A smooth line, of what is far slower than the high-pass, is taken off, and the record is carried
+    on at both ends (`carried_on`). Then all is done in one step on its spectrum: integration by
+    ``1 / (i omega)``, and the magnitude of a Butterworth high-pass of order 4, without its delay.
+    Nothing is integrated in time, so nothing drifts, and no event is faded.
+
+    Parameters
+    ----------
+    record : Record
+        The record.
+    high_pass : float
+        Frequency below which motion is taken for drift [Hz], 0.05 at least.
+
+    Returns
+    -------
+    motion : tuple of three ndarray of float, shape (n_channels, n_before + n_steps + n_after)
+        Displacement, velocity, acceleration in SI units.
+    seen : slice
+        The steps that were measured.
+    """
+    fs = record.sampling_frequency
     within("high_pass", high_pass, 0.05, fs)
-    faded = _faded(record, high_pass)[1]
+    level = _without_line(record, high_pass)
+    before, after = carried_on(level, fs, _BEYOND)
+    wide = np.concatenate([before, level, after], axis=1)
+    n = wide.shape[1]
     size = fft.next_fast_len(n + round(_PERIODS / high_pass * fs), real=True)
-    spectrum = fft.rfft(faded, size, axis=-1)
+    spectrum = fft.rfft(wide, size, axis=-1)
     f = fft.rfftfreq(size, 1.0 / fs)
     omega = 2j * np.pi * f
     passed = np.zeros_like(f)
@@ -57,43 +86,8 @@ def motion_of(record: Record, *, high_pass: float = 0.5) -> tuple[Array, Array, 
     acceleration = spectrum * passed * (1.0 if record.quantity == "acceleration" else omega)
     spectra = (velocity * inverse, velocity, acceleration)
     displacement, v, a = (fft.irfft(s, size, axis=-1)[..., :n] for s in spectra)
-    return displacement, v, a
-
-
-def lost_by_fading(
-    record: Record, *, high_pass: float = 0.5
-) -> tuple[Float[Array, " channels"], Float[Array, " channels"]]:
-    """Return how many times larger RMS and dose of each channel are without its fading.
-
-    Parameters
-    ----------
-    record : Record
-        The record.
-    high_pass : float
-        Frequency below which motion is taken for drift [Hz].
-    """
-    whole, faded = _faded(record, high_pass)
-    factors = (np.mean(whole**k, axis=1) / np.mean(faded**k, axis=1) for k in (2, 4))
-    square, fourth = factors
-    return square**0.5, fourth**0.25
-
-
-def _faded(record: Record, high_pass: float) -> tuple[Array, Array]:
-    """Return a record without what is slow, as it is and faded in and out.
-
-    An event loses a second at both ends, which are at rest, or warned of. Steady motion loses more,
-    so that no filter takes its beginning for an event; but no end that is louder than the rest.
-    """
-    fs, n = record.sampling_frequency, record.samples.shape[1]
-    few, many = (max(2, min(round(t * fs), int(n * share))) for t, share in (_EVENT, _STEADY))
-    whole = _without_line(record, high_pass)
-    fades = np.ones_like(whole)
-    for row, fade in zip(whole, fades, strict=True):
-        steady, loud = is_steady(row, fs), _LOUD * float(np.std(row))
-        for part, way in ((row[:many], fade), (row[::-1][:many], fade[::-1])):
-            width = many if steady and np.std(part) < loud else few
-            way[:width] = 0.5 * (1.0 - np.cos(np.pi * (np.arange(width) + 0.5) / width))
-    return whole, whole * fades
+    first = before.shape[1]
+    return (displacement, v, a), slice(first, first + level.shape[1])
 
 
 def _without_line(record: Record, high_pass: float) -> Array:

@@ -16,6 +16,7 @@ from trundle.signals.levels import running_rms
 
 __all__ = [
     "BASE_ACCELERATION",
+    "BASE_SIDEWAYS",
     "Weighting",
     "crest_factor",
     "mtvv",
@@ -30,6 +31,9 @@ Weighting: TypeAlias = Literal["Wb", "Wd", "Wk", "Wm"]
 
 BASE_ACCELERATION = 0.005
 """Weighted RMS acceleration at which a response factor is 1 [m/s2] (ISO 10137, SCI P354)."""
+
+BASE_SIDEWAYS = 0.00357
+"""The same of horizontal motion, weighted by Wd [m/s2] (BS 6841, SCI P354)."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,11 +21,8 @@ from trundle.criteria import (
 from trundle.errors import FitnessWarning, InputError
 from trundle.response import (
     Reduced,
-    as_if_not_faded,
     level_warnings,
-    reduce_runs,
-    runs_of_record,
-    without_short_bands,
+    reduce_record,
 )
 from trundle.signals import Averaging, Record, doubtful_channels
 from trundle.simulate import Runs
@@ -129,12 +126,16 @@ def assess_record(
             f"to 0.5 Hz at most; got {high_pass:g} Hz"
         )
     many = tuple(criteria)
-    runs = runs_of_record(record, high_pass=high_pass)
-    reduced = reduce_runs(runs, averaging=averaging, quantities=spectra_asked_for(many))
-    reduced = without_short_bands(reduced, record)
-    reduced = as_if_not_faded(reduced, record, averaging, high_pass=high_pass)
+    runs, reduced = reduce_record(
+        record,
+        high_pass=high_pass,
+        averaging=averaging,
+        quantities=spectra_asked_for(many),
+    )
     top = record.sampling_frequency / 2.5
-    found = assess_reduced(reduced, many, percentile=100.0, top=top, events=events)
+    found = assess_reduced(
+        reduced, many, percentile=100.0, top=top, events=events, axes=record.axes
+    )
     doubtful = doubtful_channels(record)
     short = record.channel_names if record.lowest_frequency > 1.0 else ()
     verdicts = tuple(

@@ -89,6 +89,7 @@ def assess(
     rate: options.Rate = "",
     sensitivity: options.Sensitivity = "",
     full_scale: options.FullScale = "",
+    channel: options.Channel = "",
     criteria: options.Criteria = "",
     shape: options.Shape = "rising",
     averaging: options.Averaging = "max_1s",
@@ -105,9 +106,11 @@ def assess(
     slow or cut off in motion is assessed with a warning.
     """
     from trundle.cli import assess_command
-    from trundle.study.read_record import RecordOptions
+    from trundle.records import RecordOptions
 
-    said = RecordOptions(unit=unit, rate=rate, sensitivity=sensitivity, full_scale=full_scale)
+    said = RecordOptions(
+        unit=unit, rate=rate, sensitivity=sensitivity, full_scale=full_scale, channel=channel
+    )
     assess_command.assess(
         files,
         said,

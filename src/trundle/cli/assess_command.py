@@ -11,10 +11,10 @@ from trundle._checks import one_of
 from trundle.cli.screen import print_table
 from trundle.criteria import VC, Criterion, Shape, find_criterion, shaped
 from trundle.errors import InputError
+from trundle.records import RecordOptions, read_record
 from trundle.report import record_rows, write_record_report
 from trundle.signals import Averaging
 from trundle.study.assess_record import RecordResult, assess_record, read_simulated
-from trundle.study.read_record import RecordOptions, read_record
 from trundle.study.store import check_target, mark_results, new_results_folder
 from trundle.study.user_criteria import read_criteria
 from trundle.units import to_si

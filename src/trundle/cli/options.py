@@ -38,6 +38,13 @@ Sensitivity = Annotated[
 FullScale = Annotated[
     str, typer.Option("--full-scale", help="What a WAV file's largest number is: '20 m/s2'.")
 ]
+Channel = Annotated[
+    str,
+    typer.Option(
+        "--channel",
+        help="Channels to assess: names, numbers from 1, units or vertical, between commas.",
+    ),
+]
 Criteria = Annotated[
     str,
     typer.Option(

@@ -1,0 +1,213 @@
+"""Read a measured record of any format into SI units."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from trundle.errors import FitnessWarning, InputError
+from trundle.records.channels import choose
+from trundle.records.formats import foreign, format_of
+from trundle.records.headings import usual_unit
+from trundle.records.miniseed import read_miniseed
+from trundle.records.raw import RawRecord
+from trundle.records.table import read_table
+from trundle.records.uff import read_uff
+from trundle.records.wav import read_wav
+from trundle.signals import Axis, Record, RecordQuantity, axis_of, channel_fault
+from trundle.units import motion_scale, to_si
+
+__all__ = ["RecordOptions", "read_record"]
+
+_LARGEST = 2_000_000_000  # bytes
+_LARGEST_TEXT = 500_000_000  # bytes: lines and cells of a text take some ten times as much
+_MISMATCH = 0.005  # relative, between a stated rate and that of the time stamps
+
+
+@dataclass(frozen=True, kw_only=True)
+class RecordOptions:
+    """Hold what a file cannot say of itself.
+
+    Attributes
+    ----------
+    unit : str
+        Unit of the samples, as ``mm/s2``, or ``V`` with a sensitivity.
+    rate : str
+        Sampling rate, as ``500 Hz``.
+    sensitivity : str
+        Of the sensor, as ``10 V/(m/s2)`` or ``1000 mV/g``.
+    full_scale : str
+        What the largest number of a WAV file stands for, as ``20 m/s2`` or ``10 V``.
+    channel : str
+        Which channels: names, numbers from 1, units or ``vertical``, between commas; all if empty.
+    """
+
+    unit: str = ""
+    rate: str = ""
+    sensitivity: str = ""
+    full_scale: str = ""
+    channel: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Channel:
+    """One channel in SI, or why it is passed over."""
+
+    scale: float = 1.0
+    quantity: RecordQuantity = "acceleration"
+    problem: str = ""
+
+
+def read_record(path: Path, options: RecordOptions) -> Record:
+    """Read a record into SI units.
+
+    The format is told by what is in the file. Channels that are no motion, or that cannot be used,
+    are passed over by name as long as others can.
+
+    Parameters
+    ----------
+    path : Path
+        A text, WAV, UFF 58 or miniSEED file.
+    options : RecordOptions
+        Units, rate and sensitivity, where the file does not say them.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, has gaps or uneven time stamps, or whose unit is not known.
+    """
+    data = _bytes_of(path)
+    kind = format_of(data)
+    if kind != "wav" and options.full_scale:
+        raise InputError(f"{path}: --full-scale is for WAV files; say --unit")
+    if options.full_scale and options.unit:
+        raise InputError(f"{path}: --full-scale says the unit too; leave --unit out")
+    stated = to_si(options.rate, "frequency") if options.rate else None
+    raw = choose(_raw(kind, data, path, stated), options.channel, str(path))
+    if raw.whole and not options.full_scale:
+        raise InputError(
+            f"{path}: its numbers are shares of a full scale; say what that is: "
+            "--full-scale '20 m/s2', or in volts with a --sensitivity"
+        )
+    rate = _rate(raw, stated, path)
+    return _record(raw, rate, options, path)
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; name the record in it")
+        if not path.exists():
+            raise InputError(f"{path}: no such file")
+        if not path.is_file():
+            raise InputError(f"{path}: is no file but a device or a pipe")
+        size = path.stat().st_size
+        if size > _LARGEST:
+            raise InputError(f"{path}: a record is at most 2 GB; cut it into events")
+        with path.open("rb") as file:
+            if size > _LARGEST_TEXT and format_of(file.read(512)) == "text":
+                raise InputError(f"{path}: a text is at most 0.5 GB; cut it into events")
+            file.seek(0)
+            return file.read(_LARGEST + 1)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
+
+
+def _raw(kind: str, data: bytes, path: Path, rate: float | None) -> RawRecord:
+    if told := foreign(data):
+        raise InputError(f"{path}: is {told}")
+    if kind == "wav":
+        return read_wav(data, path)
+    if kind == "miniseed":
+        return read_miniseed(data, path)
+    if kind == "uff":
+        return read_uff(data, path)
+    named = {".wav": "WAV", ".uff": "UFF", ".unv": "UFF", ".mseed": "miniSEED", ".msd": "miniSEED"}
+    if (suffix := path.suffix.lower()) in named:
+        raise InputError(f"{path}: is no {named[suffix]} file, whatever its name says")
+    return read_table(data, path, rate=rate)
+
+
+def _rate(raw: RawRecord, stated: float | None, path: Path) -> float:
+    if raw.rate is None and stated is None:
+        raise InputError(f"{path}: has no time column; say its rate: --rate '500 Hz'")
+    if raw.rate is None or stated is None:
+        return float(raw.rate or stated or 0.0)
+    if abs(stated / raw.rate - 1.0) > _MISMATCH:
+        raise InputError(
+            f"{path}: its own time says {raw.rate:.5g} Hz, and --rate {stated:.5g} Hz; one is wrong"
+        )
+    return float(raw.rate)
+
+
+def _record(raw: RawRecord, rate: float, options: RecordOptions, path: Path) -> Record:
+    channels = [_channel(raw, i, options, rate) for i in range(len(raw.names))]
+    sound = [i for i, one in enumerate(channels) if not one.problem]
+    if not sound:
+        raise InputError(f"{path}: channel {raw.names[0]!r} {channels[0].problem}")
+    quantities = {channels[i].quantity for i in sound}
+    if len(quantities) > 1:
+        raise InputError(
+            f"{path}: channels of acceleration and of velocity; assess them apart, by --channel"
+        )
+    axes = raw.axes or ("",) * len(raw.names)
+    notes = [FitnessWarning(subject="record", message=note) for note in raw.notes]
+    notes += [
+        FitnessWarning(subject=f"passed over, {raw.names[i]}", message=one.problem)
+        for i, one in enumerate(channels)
+        if one.problem
+    ]
+    return Record(
+        samples=np.stack([channels[i].scale * raw.samples[i] for i in sound]),
+        sampling_frequency=rate,
+        quantity=quantities.pop(),
+        channel_names=tuple(raw.names[i] for i in sound),
+        source=path.name,
+        axes=tuple(_axis(axes[i], raw.names[i]) for i in sound),
+        notes=tuple(notes),
+    )
+
+
+def _axis(stated: str, name: str) -> Axis:
+    if stated in {"vertical", "horizontal"}:
+        return "vertical" if stated == "vertical" else "horizontal"
+    return axis_of(name)
+
+
+def _channel(raw: RawRecord, i: int, options: RecordOptions, rate: float) -> _Channel:
+    """Return how a channel becomes SI, or why it cannot."""
+    unit = _unit(raw, i, options)
+    if not unit:
+        return _Channel(problem=_unknown_unit(raw.ranges[i] if raw.ranges else ""))
+    try:
+        scale, quantity = motion_scale(usual_unit(unit), options.sensitivity)
+    except InputError as error:
+        return _Channel(problem=f"cannot be used: {error}")
+    fault = channel_fault(scale * raw.samples[i], rate)
+    return _Channel(scale=scale, quantity=quantity, problem=fault)
+
+
+def _unknown_unit(looks_like: str) -> str:
+    """Say that the unit of a channel is not known, and how to say it."""
+    if looks_like:
+        return (
+            f"has {looks_like!r} in its heading, which looks like the sensor's range and not like "
+            "the unit of its samples; say that by --unit, as in --unit g"
+        )
+    return (
+        "has no unit; write it in the heading as 'name [mm/s2]', or say --unit (a WAV file: "
+        "--full-scale '20 m/s2')"
+    )
+
+
+def _unit(raw: RawRecord, i: int, options: RecordOptions) -> str:
+    """Return the unit of a channel; what file and command line say must not differ."""
+    own = raw.units[i]
+    if own and options.unit and usual_unit(own) != usual_unit(options.unit):
+        raise InputError(
+            f"{raw.names[i]!r} is in {own!r} by its heading, and --unit says {options.unit!r}; "
+            "leave one out"
+        )
+    return options.full_scale or own or options.unit

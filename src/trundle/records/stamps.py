@@ -1,0 +1,165 @@
+"""Turn time stamps into an even time: rounded, jittering, by the clock; refuse real gaps."""
+
+from __future__ import annotations
+
+import re
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+from jaxtyping import Float
+from scipy.interpolate import CubicSpline
+
+from trundle._typing import Array
+from trundle.errors import InputError
+
+__all__ = ["clock_seconds", "even_rate", "is_stamp", "on_even_time"]
+
+_CLOCK = re.compile(r"^\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?\s*(?:[AP]M)?$", re.IGNORECASE)
+_DATE = re.compile(r"^\d{1,4}[-./]\d{1,2}[-./]\d{1,4}$")
+_BOTH = re.compile(
+    r"^(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T\s]+"
+    r"(?P<clock>\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?\s*(?:[AP]M)?)\s*(?:Z|[+-]\d{2}:?\d{2})?$",
+    re.IGNORECASE,
+)
+_DAY = 86400.0
+_GAP = 2.5  # usual steps: more is a hole that no curve between samples fills
+_STRAY = 0.01  # of a step, that stamps may stray without a word
+_CHANGE = 0.1  # of the rate from second to second: more is another rate
+
+
+def is_stamp(text: str) -> bool:
+    """Return whether a cell is a date, a time of day, or both."""
+    cell = text.strip().strip('"')
+    return any(pattern.match(cell) for pattern in (_CLOCK, _DATE, _BOTH))
+
+
+def clock_seconds(columns: list[list[str]], path: Path) -> Float[Array, " steps"]:
+    """Return seconds since the first of some stamps, in one column or a date and a time of day.
+
+    Parameters
+    ----------
+    columns : list of list of str
+        One column of stamps, or two.
+    path : Path
+        The file, for messages.
+
+    Raises
+    ------
+    InputError
+        A stamp that cannot be read.
+    """
+    whole = [" ".join(parts).strip() for parts in zip(*columns, strict=True)]
+    days: dict[str, float] = {}
+    out = np.empty(len(whole))
+    for i, text in enumerate(whole):
+        both = _BOTH.match(text)
+        clock, date = (both["clock"], both["date"]) if both else (text, "")
+        try:
+            if date not in days:
+                days[date] = _day(date)
+            out[i] = days[date] + _seconds(clock)
+        except ValueError:
+            raise InputError(f"{path}: time stamp {i + 1}, {text!r}, cannot be read") from None
+    if not any(days):  # times of day alone go back at midnight
+        out += _DAY * np.cumsum(np.concatenate([[0.0], np.diff(out) < -0.5 * _DAY]))
+    return out - out[0]
+
+
+def _day(date: str) -> float:
+    """Return a date in seconds; the order of day and month of one record does not matter."""
+    if not date:
+        return 0.0
+    parts = [int(part) for part in re.split(r"[-./]", date)]
+    year_first = parts[0] > 31
+    year, a, b = (parts[0], parts[1], parts[2]) if year_first else (parts[2], parts[1], parts[0])
+    month, day = (a, b) if a <= 12 else (b, a)
+    return _DAY * datetime(year if year > 99 else 2000 + year, month, day).toordinal()
+
+
+def _seconds(clock: str) -> float:
+    text, half = clock.strip(), 0.0
+    if text[-2:].upper() in {"AM", "PM"}:
+        hour = int(text.split(":")[0])
+        half = 12 * 3600.0 * ((text[-2:].upper() == "PM") - (hour == 12))
+        text = text[:-2].strip()
+    parts = text.replace(",", ".").split(":")
+    if len(parts) == 4:  # 10:00:00:250 counts milliseconds
+        parts = [*parts[:2], f"{parts[2]}.{parts[3]}"]
+    hour, minute, second = [float(part) for part in (*parts, "0")][:3]
+    return half + 3600.0 * hour + 60.0 * minute + second
+
+
+def even_rate(time: Float[Array, " steps"], path: Path) -> float | None:
+    """Return the sampling rate of time stamps [Hz]; None if they stray, and a curve must help.
+
+    Parameters
+    ----------
+    time : ndarray of float, shape (n_steps,)
+        Time stamps [s].
+    path : Path
+        The file, for messages.
+
+    Raises
+    ------
+    InputError
+        Stamps that are no numbers, do not rise, have gaps, or change their rate.
+    """
+    if not np.isfinite(time).all():
+        at = int(np.argmin(np.isfinite(time)))
+        raise InputError(f"{path}: time stamp {at + 1} is not a number")
+    steps = np.diff(time)
+    if np.any(steps < 0.0) or time[-1] <= time[0]:
+        raise InputError(f"{path}: time does not rise; sort the record")
+    step = float((time[-1] - time[0]) / (len(time) - 1))
+    # Stamps are written with so many decimals: they stray by half of the last, and no more.
+    exact = 4.0 * np.finfo(float).eps * max(1.0, float(np.abs(time).max()))
+    decimals = next((k for k in range(10) if np.abs(time - np.round(time, k)).max() <= exact), 10)
+    strays = float(np.abs(time - (time[0] + step * np.arange(len(time)))).max())
+    if strays <= 10.0**-decimals + _STRAY * step:
+        return 1.0 / step
+    usual, at = float(np.median(steps)), int(np.argmax(steps))
+    if steps[at] > _GAP * usual + 2.0 * 10.0**-decimals:
+        raise InputError(
+            f"{path}: gaps in time; the widest after {time[at]:.6g} s ({steps[at]:.4g} s instead "
+            f"of {usual:.4g} s); cut the record there"
+        )
+    per_second = np.diff(np.searchsorted(time, np.arange(time[0], time[-1], 1.0)))
+    if len(per_second) > 1 and np.ptp(per_second) > _CHANGE * per_second.mean() + 4.0:
+        raise InputError(
+            f"{path}: its rate changes, from {per_second.min()} to {per_second.max()} samples a "
+            "second; cut the record where it does"
+        )
+    return None
+
+
+def on_even_time(
+    time: Float[Array, " steps"], samples: Float[Array, "channels steps"]
+) -> tuple[float, Float[Array, "channels steps"], str]:
+    """Return samples on an even time, by a cubic spline through what was measured.
+
+    Returns
+    -------
+    rate : float
+        Samples per second [Hz].
+    samples : ndarray of float, shape (n_channels, n_steps)
+        As many as there were.
+    note : str
+        By how much the stamps stray.
+    """
+    n = len(time)
+    step = float((time[-1] - time[0]) / (n - 1))
+    even = time[0] + step * np.arange(n)
+    rising = np.concatenate([[True], np.diff(time) > 0.0])
+    sound = np.isfinite(samples).all(axis=1)
+    out = np.full(samples.shape, np.nan)
+    if sound.any():
+        curve = CubicSpline(time[rising], samples[sound][:, rising], axis=1)
+        out[sound] = curve(even)
+    off = float(np.std(np.diff(time)))
+    note = (
+        f"time stamps stray by {1e3 * off:.3g} ms from step to step ({100 * off / step:.2g} % of "
+        f"one), and by {1e3 * np.abs(time - even).max():.3g} ms from an even time; taken to an "
+        f"even {1.0 / step:.5g} Hz by a curve through the samples"
+    )
+    return 1.0 / step, out, note

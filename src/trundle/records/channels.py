@@ -59,4 +59,5 @@ def _matching(raw: RawRecord, part: str) -> list[int]:
     ]
     if of_unit:
         return of_unit
-    return [i for i, name in enumerate(names) if len(word) == 1 and name.split()[-1:] == [word]]
+    ends = [i for i, name in enumerate(names) if len(word) > 1 and name.endswith(word)]
+    return ends or [i for i, name in enumerate(names) if name.split()[-1:] == [word]]

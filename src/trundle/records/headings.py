@@ -9,13 +9,13 @@ from trundle.errors import InputError
 from trundle.records.raw import Facts
 from trundle.units import motion_scale, to_si
 
-__all__ = ["Heading", "facts_of", "is_unit", "read_heading", "usual_unit"]
+__all__ = ["Heading", "facts_of", "is_fact", "is_unit", "read_heading", "usual_unit"]
 
 _BRACKETS = re.compile(
     r"^\s*(?P<name>.*?)\s*(\[(?P<square>[^\[\]]+)\]|\((?P<round>(?:[^()]|\([^()]*\))+)\))\s*$"
 )
 _BEHIND = re.compile(r"^\s*(?P<name>.*?)(?:\s+in\s+|\s*/\s+|\s+/\s*|,\s+)(?P<unit>\S.*?)\s*$")
-_TAIL = re.compile(r"^\s*(?P<name>.*?)[\s_](?P<unit>\S+)\s*$")
+_TAIL = re.compile(r"^\s*(?P<name>.*)[\s_](?P<unit>\S+)\s*$")
 _RANGE = re.compile(r"^\s*(?:\+-|\+/-|±)?\s*\d[\d.,]*\s*\S.*$")
 _SPELLINGS: tuple[tuple[str, str], ...] = (
     (r"^g['’]?s$|^G['’]?[sS]?$|^g_?n$", "g"),
@@ -122,6 +122,13 @@ def read_heading(text: str, column: int) -> Heading:
         if match is not None and match["name"].strip() and _is_motion(match["unit"].strip("()")):
             return Heading(name=match["name"].strip(), unit=match["unit"].strip("()"))
     return Heading(name=text or fallback)
+
+
+def is_fact(line: str) -> bool:
+    """Return whether a line states a rate, a step, a unit or a number of samples."""
+    match = _PAIR.match(line.strip())
+    key = match["key"].strip().strip('"') if match else ""
+    return any(pattern.match(key) for pattern in (_RATE, _STEP, _COUNT, _UNIT))
 
 
 def facts_of(lines: list[str]) -> Facts:

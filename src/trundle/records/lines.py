@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from trundle.errors import InputError
-from trundle.records.headings import is_unit
+from trundle.records.headings import is_fact, is_unit
 from trundle.records.stamps import is_stamp
 
 __all__ = ["Layout", "cells_of", "find_table", "is_number", "text_of"]
@@ -206,11 +206,9 @@ def _named(line: str, mark: str, width: int) -> list[str]:
         cells = cells[1:]
     if not comment and len(cells) > width >= 2:
         cells = cells[:width]  # a column of comments that the rows leave out
-    if len(cells) != width or all(is_number(cell) for cell in cells):
+    if len(cells) != width or all(is_number(cell) for cell in cells) or is_fact(line):
         return []
-    if comment and width == 1 and any(sign in cells[0] for sign in "=:"):
-        return []
-    return cells
+    return [] if comment and width == 1 and any(sign in cells[0] for sign in "=:") else cells
 
 
 def as_array(rows: Sequence[Sequence[str]], comma: bool) -> np.ndarray:

@@ -15,7 +15,7 @@ from trundle.records.raw import RawRecord
 __all__ = ["read_miniseed"]
 
 
-def read_miniseed(data: bytes, path: Path) -> RawRecord:
+def read_miniseed(data: bytes, path: Path, *, wanted: str = "") -> RawRecord:
     """Read a miniSEED file; channels of text are passed over by name.
 
     Parameters
@@ -25,6 +25,8 @@ def read_miniseed(data: bytes, path: Path) -> RawRecord:
         no archive is unpacked and no other reader is asked.
     path : Path
         Its name, for messages.
+    wanted : str
+        Names of channels, or ends of names, between commas; all if none is such a name.
 
     Raises
     ------
@@ -34,6 +36,8 @@ def read_miniseed(data: bytes, path: Path) -> RawRecord:
     traces = _traces(data, path)
     text = sorted({trace.id for trace in traces if trace.data.dtype.kind not in "iuf"})
     stream = [trace for trace in traces if trace.data.dtype.kind in "iuf"]
+    asked = tuple(part.strip().casefold() for part in wanted.split(",") if part.strip())
+    stream = [t for t in stream if t.id.casefold().endswith(asked)] or stream if asked else stream
     if not stream:
         raise InputError(f"{path}: {', '.join(text)} holds text, no samples")
     gaps = [trace.id for trace in stream if np.ma.isMaskedArray(trace.data)]
@@ -43,7 +47,7 @@ def read_miniseed(data: bytes, path: Path) -> RawRecord:
         raise InputError(
             f"{path}: its channels differ in rate or length ("
             + ", ".join(f"{t.id} {len(t.data)} at {t.stats.sampling_rate:g} Hz" for t in stream)
-            + "); write them to files of their own"
+            + "); choose some of one length by --channel"
         )
     starts = [float(trace.stats.starttime) for trace in stream]
     rate = float(stream[0].stats.sampling_rate)

@@ -85,7 +85,7 @@ def read_record(path: Path, options: RecordOptions) -> Record:
     if options.full_scale and options.unit:
         raise InputError(f"{path}: --full-scale says the unit too; leave --unit out")
     stated = to_si(options.rate, "frequency") if options.rate else None
-    raw = choose(_raw(kind, data, path, stated), options.channel, str(path))
+    raw = choose(_raw(data, path, options, stated), options.channel, str(path))
     if raw.whole and not options.full_scale:
         raise InputError(
             f"{path}: its numbers are shares of a full scale; say what that is: "
@@ -115,13 +115,14 @@ def _bytes_of(path: Path) -> bytes:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
 
 
-def _raw(kind: str, data: bytes, path: Path, rate: float | None) -> RawRecord:
+def _raw(data: bytes, path: Path, options: RecordOptions, rate: float | None) -> RawRecord:
+    kind = format_of(data)
     if told := foreign(data):
         raise InputError(f"{path}: is {told}")
     if kind == "wav":
         return read_wav(data, path)
     if kind == "miniseed":
-        return read_miniseed(data, path)
+        return read_miniseed(data, path, wanted=options.channel)
     if kind == "uff":
         return read_uff(data, path)
     named = {".wav": "WAV", ".uff": "UFF", ".unv": "UFF", ".mseed": "miniSEED", ".msd": "miniSEED"}

@@ -58,10 +58,11 @@ def clock_seconds(columns: list[list[str]], path: Path) -> Float[Array, " steps"
         try:
             if date not in days:
                 days[date] = _day(date)
-            out[i] = days[date] + _seconds(clock)
+            # less the first day: a clock's digits would be lost beside 2000 years
+            out[i] = days[date] - next(iter(days.values())) + _seconds(clock)
         except ValueError:
             raise InputError(f"{path}: time stamp {i + 1}, {text!r}, cannot be read") from None
-    if not any(days):  # times of day alone go back at midnight
+    if not any(days.values()):  # times of day alone go back at midnight
         out += _DAY * np.cumsum(np.concatenate([[0.0], np.diff(out) < -0.5 * _DAY]))
     return out - out[0]
 

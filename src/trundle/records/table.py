@@ -145,7 +145,7 @@ def _time(
             return stamped, clock_seconds([[r[i] for r in cells] for i in stamped[:2]], path)
     if table.shape[1] < 2:
         return [], None
-    named = [i for i, h in enumerate(headings) if layout.heading and _TIME.match(h.name)]
+    named = [i for i, h in enumerate(headings) if layout.heading and _tells_time(h)]
     if named:
         at = named[0]
         return named, _scale(headings[at], table[:, at], rate, path) * table[:, at]
@@ -156,6 +156,16 @@ def _time(
             if abs(step * scale * rate - 1.0) < _SAME:
                 return [0], scale * table[:, 0]
     return [], None
+
+
+def _tells_time(heading: Heading) -> bool:
+    """Return whether a heading is of time: its name, and its unit if it says one."""
+    if not _TIME.match(heading.name):
+        return False
+    try:
+        return not heading.unit or to_si(f"1 {heading.unit}".replace("sec", "s"), "time") > 0.0
+    except InputError:
+        return False
 
 
 def _is_whole(column: Array) -> bool:

@@ -84,7 +84,7 @@ def usual_unit(text: str) -> str:
         if match:
             prefix = (match.groupdict().get("p") or "") if "<p>" in spelled else ""
             found = spelled.replace(r"\g<p>", prefix)
-            return "milli" + "cm/s" if unit == "mkine" else found
+            return f"0.001 {found}" if unit == "mkine" else found
     return unit
 
 

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Int
 
+from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.records.headings import is_fact, is_unit
 from trundle.records.stamps import is_stamp
@@ -39,10 +41,12 @@ class Layout:
         Cells of a second line with units; empty where there is none.
     above : tuple of str
         All lines above the table that are not its heading.
-    rows : list of tuple of (int, str)
-        Lines of the table with their numbers in the file.
+    lines : list of str
+        Lines of the table.
+    numbers : ndarray of int, shape (n_lines,)
+        Their numbers in the file.
     left_out : list of tuple of (int, str)
-        Lines behind it that hold words.
+        Lines behind it that hold words, with their numbers.
     """
 
     mark: str
@@ -50,7 +54,8 @@ class Layout:
     heading: tuple[str, ...]
     units: tuple[str, ...]
     above: tuple[str, ...]
-    rows: list[tuple[int, str]]
+    lines: list[str]
+    numbers: Int[Array, " lines"]
     left_out: list[tuple[int, str]]
 
 
@@ -103,15 +108,15 @@ def find_table(text: str, path: Path) -> Layout:
     InputError
         No run of two lines of numbers, or a line in the table that is not like it.
     """
-    numbered = [(i, line) for i, line in enumerate(text.splitlines(), start=1) if line.strip()]
-    plain = [(i, line) for i, line in numbered if not _is_comment(line)]
-    head = [line for _, line in plain[:_LOOKED_AT]]
+    every = text.splitlines()
+    numbers = np.array([i for i, s in enumerate(every, 1) if s.strip() and not _is_comment(s)])
+    plain = [every[i - 1] for i in numbers]
+    head = plain[:_LOOKED_AT]
     (length, width, first), mark = _best(head)
     if length < 1 or len(plain) - first < 2:
         raise InputError(f"{path}: holds no samples: no two lines of numbers stand together")
-    rows = [(i, line) for i, line in plain[first:]]
-    rows, left_out = _without_words(rows, mark)
-    above = [(i, line) for i, line in numbered if i < rows[0][0]]
+    end = _end_of_numbers(plain, mark)
+    above = [(i, s) for i, s in enumerate(every[: numbers[first] - 1], 1) if s.strip()]
     heading, units, rest = _heading(above, mark, width)
     if not heading and above and length < 2:
         raise InputError(f"{path}: holds no samples: no two lines of numbers stand together")
@@ -121,8 +126,9 @@ def find_table(text: str, path: Path) -> Layout:
         heading=tuple(heading),
         units=tuple(units),
         above=tuple(line for _, line in rest),
-        rows=rows,
-        left_out=left_out,
+        lines=plain[first:end],
+        numbers=numbers[first:end],
+        left_out=[(int(numbers[i]), plain[i]) for i in range(end, len(plain))],
     )
 
 
@@ -165,16 +171,12 @@ def _trimmed(cells: list[str], mark: str) -> list[str]:
     return cells[:-1] if mark != " " and len(cells) > 1 and not cells[-1].strip() else cells
 
 
-def _without_words(
-    rows: list[tuple[int, str]], mark: str
-) -> tuple[list[tuple[int, str]], list[tuple[int, str]]]:
-    """Part the words behind a table from it."""
-    end = len(rows)
-    while end > 1 and not any(
-        is_number(c) or is_stamp(c) for c in cells_of(rows[end - 1][1], mark)
-    ):
+def _end_of_numbers(lines: list[str], mark: str) -> int:
+    """Return where the words behind a table begin."""
+    end = len(lines)
+    while end > 1 and not any(is_number(c) or is_stamp(c) for c in cells_of(lines[end - 1], mark)):
         end -= 1
-    return rows[:end], rows[end:]
+    return end
 
 
 def _heading(

@@ -148,7 +148,7 @@ def _record(raw: RawRecord, rate: float, options: RecordOptions, path: Path) -> 
     sound = [i for i, one in enumerate(channels) if not one.problem]
     if not sound:
         raise InputError(f"{path}: channel {raw.names[0]!r} {channels[0].problem}")
-    quantities = {channels[i].quantity for i in sound}
+    quantities: set[RecordQuantity] = {channels[i].quantity for i in sound}
     if len(quantities) > 1:
         raise InputError(
             f"{path}: channels of acceleration and of velocity; assess them apart, by --channel"

@@ -217,12 +217,12 @@ def _numbers(
     layout: Layout, path: Path
 ) -> tuple[list[list[str]] | None, Float[Array, "rows columns"]]:
     """Return the numbers, quickly if all cells are; else cells too, to find what they are."""
-    lines = [line for _, line in layout.rows]
+    lines = layout.lines
     comma = _decimal_comma(lines, layout.mark)
     if layout.mark not in {" ", ","} or not comma:
-        quick = [line.replace(",", ".") for line in lines] if comma else lines
         if layout.mark != " ":
-            quick = _without_last_marks(quick, layout.mark)
+            lines = _without_last_marks(lines, layout.mark)
+        quick = (line.replace(",", ".") for line in lines) if comma else lines
         with suppress(ValueError):
             mark = None if layout.mark == " " else layout.mark
             table = np.loadtxt(quick, delimiter=mark, ndmin=2, comments=None)
@@ -247,7 +247,7 @@ def _without_last_marks(lines: list[str], mark: str) -> list[str]:
 def _cells(layout: Layout, path: Path) -> list[list[str]]:
     """Return all cells; a line of another width is named."""
     mark, width = layout.mark, layout.width
-    lines = [line for _, line in layout.rows]
+    lines = layout.lines
     if mark == " ":
         rows = [cells_of(line, mark) for line in lines]
     else:
@@ -266,8 +266,8 @@ def _cells(layout: Layout, path: Path) -> list[list[str]]:
 
 
 def _refuse_line(layout: Layout, row: int, width: int, path: Path) -> None:
-    number, line = layout.rows[row]
-    last = row == len(layout.rows) - 1
+    number, line = layout.numbers[row], layout.lines[row]
+    last = row == len(layout.lines) - 1
     if last and width < layout.width:
         raise InputError(
             f"{path}: line {number}, its last, has {width} of {layout.width} columns: the file is "

@@ -48,8 +48,10 @@ def read_wav(data: bytes, path: Path) -> RawRecord:
         offset = 128.0 if samples.dtype == np.uint8 else 0.0
         full = 128.0 if samples.dtype == np.uint8 else -float(np.iinfo(samples.dtype).min)
         samples = (samples - offset) / full
+    with np.errstate(invalid="ignore"):  # of damaged floats, which are found to be no numbers
+        samples = samples.astype(float)
     return RawRecord(
-        samples=samples.astype(float),
+        samples=samples,
         rate=float(rate),
         names=tuple(f"channel {i + 1}" for i in range(len(samples))),
         units=("",) * len(samples),

@@ -2,7 +2,7 @@
 # make test      set up and run every check and test
 # make check     format, lint, layers, types and docstrings only
 # make fast      the tests without those marked slow
-# make validate  every published case and the deliberate faults; writes docs/validation.md
+# make validate  every published case, spoiled inputs and the deliberate faults; writes docs/validation.md
 #                (make validate ONLY=V1 runs one case again and prints its rows)
 # make faults    put faults into a copy of the source; every one must make a test fail
 # make bench     speed, as ratios within one run
@@ -47,6 +47,7 @@ validate: .venv/.ready-dev
 else
 validate: .venv/.ready-dev
 	$(BIN)/python -m pytest -n 2 --record=build/validation.json tests/validation
+	$(BIN)/python scripts/mutate_inputs.py
 	$(BIN)/python scripts/check_faults.py --json build/faults.json
 	$(BIN)/python scripts/validation_page.py build/validation.json build/faults.json
 endif

@@ -64,6 +64,10 @@ _CYCLIC = ("frequency", "wavenumber")
 _UNIT_CHARACTERS = re.compile(r"^[A-Za-zµμ%/*^()·\s\d²³-]*$")
 # in a unit of motion g is gravity, not a gram, and mg a thousandth of it
 _GRAVITY = re.compile(r"\b(?P<prefix>[muµμ]?)gn?\b")
+# a power of a power, or a large one: a parser would work on m**9**9**9 for ever
+_TOWER = re.compile(
+    r"(?:\*\*|\^)\s*[(+-]*\d{2,}|(?:\*\*|\^)[^A-Za-z/]*?\d\s*\)*\s*(?:\*\*|\^)|\d{6,}"
+)
 _POWER = re.compile(r"(?<=[A-Za-zµμ])([23])\b")
 
 
@@ -116,8 +120,12 @@ def _finite(number: float, example: str) -> float:
 
 @cache
 def _factor(unit: str, unit_si: str, dimension: str, example: str) -> float:
-    if not _UNIT_CHARACTERS.match(unit):
+    if not _UNIT_CHARACTERS.match(unit) or _TOWER.search(unit):
         raise InputError(f"unit {unit!r} is not understood; write it such as in {example!r}")
+    if dimension == "mass" and unit in {"ton", "tons"}:
+        raise InputError(
+            "a 'ton' is 1000 kg, 907 kg or 1016 kg by country; write 't' for 1000 kg, or kg"
+        )
     registry, pint = _registry()
     if dimension in _CYCLIC and "rad" in unit:
         raise InputError(f"a {dimension} counts cycles, not radians; divide by 2 pi: {example!r}")
@@ -210,7 +218,7 @@ def _parsed(text: str, registry: Any) -> Any:
         r"^\s*(?P<number>[+-]?[\d.]+(?:[eE][+-]?\d{1,3})?)?\s*(?P<unit>.{0,40})$", text
     )
     unit = (match["unit"] if match else "").strip()
-    if match is None or not _UNIT_CHARACTERS.match(unit):
+    if match is None or not _UNIT_CHARACTERS.match(unit) or _TOWER.search(unit):
         raise InputError(f"{text!r} is not understood; write such as 'mm/s2' or '10 V/(m/s2)'")
     spelled = unit.replace("·", "*").replace("²", "**2").replace("³", "**3").replace("^", "**")
     spelled = _GRAVITY.sub(r"\g<prefix>standard_gravity", _POWER.sub(r"**\1", spelled))

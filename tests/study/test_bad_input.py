@@ -79,6 +79,8 @@ MISTAKES = [
     ("route of no length", '["12 m", "3 m"]', '["0 m", "3 m"]', ["route[1].path", "same point twice"]),
     ("route of one point", ', ["12 m", "3 m"]', "", ["route[1].path"]),
     ("point off the floor", '["3 m", "3 m"]', '["3 m", "7 m"]', ["point[1].at", "(3, 7) m", "move it onto the floor"]),
+    ("a method named as a coordinate", 'name = "coupled"', 'name = "road"', ["method[1].name", "results have for themselves"]),
+    ("a route named as a coordinate", 'name = "main"', 'name = "contact"', ["route[1].name", "results have for themselves"]),
     ("dt too long for the bands", '"5 ms"', '"10 ms"', ["criteria.method", "80 Hz", "at most 5 ms"]),
     ("dt longer than the record", '"4 s"', '"20 ms"', ["method[1].dt", "10 steps"]),
     ("no f_max", 'f_max = "30 Hz"\n', "", ["method[1].f_max", "modes are kept"]),

@@ -66,6 +66,30 @@ def test_a_spoiled_file_is_found_anew(folder, counted, spoil):
     assert counted == [20.0, 20.0]
 
 
+@pytest.mark.parametrize("what", ["omega", "shapes", "one number", "fewer dofs", "negative"])
+def test_finite_nonsense_is_not_believed(folder, counted, what):
+    """Whole files of other numbers: other frequencies, other shapes, a single entry changed."""
+    floor = small_floor(mesh_size=2.0)
+    right = modes_of(floor, f_max=20.0)
+    (file,) = folder.iterdir()
+    kept = {n: np.array(getattr(right, n)) for n in ("omega", "shapes", "residuals", "f_max")}
+    if what == "omega":
+        kept["omega"] *= 1.001
+    if what == "shapes":
+        kept["shapes"] *= 1.001
+    if what == "one number":
+        at = np.unravel_index(np.abs(kept["shapes"]).argmax(), kept["shapes"].shape)
+        kept["shapes"][at] *= 1.01
+    if what == "fewer dofs":
+        kept["shapes"] = kept["shapes"][:-1]
+    if what == "negative":
+        kept["omega"] *= -1.0
+    np.savez(file, **kept)
+    again = modes_of(floor, f_max=20.0)
+    assert counted == [20.0, 20.0]
+    np.testing.assert_array_equal(again.shapes, right.shapes)
+
+
 def test_switched_off_or_not_writable_it_still_works(tmp_path, monkeypatch, counted):
     floor = small_floor(mesh_size=2.0)
     monkeypatch.setenv("TRUNDLE_CACHE", "")

@@ -1,5 +1,6 @@
 """A run that is killed goes on, and ends with the bytes of one that was not."""
 
+import io
 import os
 import signal
 import subprocess
@@ -15,6 +16,7 @@ from trundle.cli.app import main
 from trundle.errors import InputError, UnstableStepError
 from trundle.study import load_study
 from trundle.study.jobs import compute, plan_jobs
+from trundle.study.pieces import Piece
 from trundle.study.run import run_study
 from trundle.study.unfinished import InMemory, unfinished_folder, unfinished_of
 
@@ -74,8 +76,8 @@ def arrays(folder: Path) -> dict[str, bytes]:
 
 
 def pieces(folder: Path) -> list[str]:
-    store = unfinished_folder(folder / "out") / "pieces.zarr"
-    return [e.name for e in store.glob("method*")] if store.is_dir() else []
+    store = unfinished_folder(folder / "out") / "pieces"
+    return [e.name for e in store.glob("*.piece")] if store.is_dir() else []
 
 
 def wait_for_pieces(folder: Path, process: subprocess.Popen, count: int) -> None:
@@ -190,6 +192,71 @@ def test_a_piece_comes_back_as_it_was(tmp_path):
                 for key, values in piece.arrays.items():
                     assert again.arrays[key].dtype == np.asarray(values).dtype
                     assert again.arrays[key].tobytes() == np.ascontiguousarray(values).tobytes()
+
+
+def spoil(file, how):
+    data = bytearray(file.read_bytes())
+    if how == "flipped":
+        data[len(data) // 2] ^= 1
+    if how == "cut":
+        data = data[: len(data) // 2]
+    if how == "other numbers":  # an archive of its own, whole but for the checksum
+        packed = io.BytesIO()
+        with np.load(io.BytesIO(bytes(data[32:]))) as kept:
+            np.savez(packed, **{name: kept[name] + 1 for name in kept.files if "time" in name})
+        data = data[:32] + packed.getvalue()
+    file.write_bytes(b"" if how == "empty" else bytes(data))
+
+
+@pytest.mark.parametrize("how", ["flipped", "cut", "empty", "other numbers"])
+def test_a_piece_that_was_altered_is_not_believed(tmp_path, how):
+    """One of two pieces is spoiled between stop and resumption: it is not found, the other is."""
+    path, out = tmp_path / "study.toml", tmp_path / "out"
+    path.write_text(GOOD)
+    study, memory = load_study(path), InMemory()
+    run_study(study, store=memory)
+    first, second, *_ = [name for job in plan_jobs(study) for name in job.pieces]
+    with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
+        for name in (first, second):
+            disk.save(name, memory.load(name))
+        raise KeyboardInterrupt
+    spoil(unfinished_folder(out) / "pieces" / f"{first}.piece", how)
+    with unfinished_of(study, out) as disk:
+        assert (disk.n_found, disk.has(first), disk.has(second)) == (1, False, True)
+
+
+def test_what_a_study_only_names_is_in_its_fingerprint(tmp_path):
+    """A criteria file edited between stop and resumption: everything is computed anew."""
+    path, out, own = tmp_path / "study.toml", tmp_path / "out", tmp_path / "own.csv"
+    text = GOOD.replace('curves = ["VC-A"]', 'curves = ["VC-A", "own"]\nfiles = ["own.csv"]')
+    path.write_text(text)
+    for limit, found in (("60", 0), ("60", 1), ("50", 0)):
+        own.write_text(
+            f"# quantity = band_rms_velocity\nfrequency [Hz], limit [um/s]\n1,{limit}\n80,{limit}\n"
+        )
+        study = load_study(path)
+        with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
+            assert disk.n_found == found
+            disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+            raise KeyboardInterrupt
+
+
+@pytest.mark.parametrize("where", ["lock", "trundle-unfinished.json", "pieces"])
+def test_links_in_an_unfinished_folder_are_not_followed(tmp_path, where):
+    path, victim = tmp_path / "study.toml", tmp_path / "thesis.tex"
+    path.write_text(GOOD)
+    victim.write_text("mine")
+    folder = unfinished_folder(tmp_path / "out")
+    folder.mkdir()
+    (folder / "trundle-unfinished.json").write_text("{}")
+    (folder / where).unlink(missing_ok=True)
+    (folder / where).symlink_to(victim)
+    with (
+        pytest.raises(InputError, match="is a link"),
+        unfinished_of(load_study(path), tmp_path / "out"),
+    ):
+        pass
+    assert victim.read_text() == "mine"
 
 
 def test_two_runs_into_one_folder_do_not_meet(tmp_path):

@@ -19,6 +19,7 @@ from test_bad_input import GOOD
 from trundle.report import bound_rows, comparison_rows, write_report
 from trundle.study import load_study
 from trundle.study.cells import CellKey
+from trundle.study.owned import record_owned
 from trundle.study.run import positions_at, run_study
 from trundle.study.store import check_target, new_results_folder, uninterrupted, write_results
 
@@ -201,8 +202,8 @@ def test_an_interrupted_run_leaves_no_half_results(tmp_path, number, stage):
     study.write_text(GOOD)
     out = tmp_path / "out"
     out.mkdir()
-    for name, text in ((".trundle-results", ""), ("summary.json", "{}")):
-        (out / name).write_text(text)
+    (out / "summary.json").write_text("{}")
+    record_owned(out, "study")
     process = subprocess.Popen(
         [sys.executable, "-m", "trundle", "run", str(study), "--out", str(out)],
         stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tmp_path,

@@ -15,7 +15,7 @@ from trundle.records import RecordOptions, read_record
 from trundle.report import record_rows, write_record_report
 from trundle.signals import Averaging
 from trundle.study.assess_record import RecordResult, assess_record, read_simulated
-from trundle.study.store import check_target, mark_results, new_results_folder
+from trundle.study.store import check_target, new_results_folder
 from trundle.study.user_criteria import read_criteria
 from trundle.units import to_si
 
@@ -48,7 +48,9 @@ def assess(
     if len(set(places)) < len(places):
         raise InputError("two records would have one results folder; assess them apart with --out")
     for place in places:
-        check_target(place)
+        check_target(place, "record")
+    if simulation is not None and simulation.resolve() in {place.resolve() for place in places}:
+        raise InputError(f"--simulation {simulation} would be replaced; choose another --out")
     simulated = (
         () if simulation is None else read_simulated(simulation, point=point, averaging=rule)
     )
@@ -57,9 +59,8 @@ def assess(
         result = assess_record(
             record, curves, averaging=rule, high_pass=limit, events=events, simulated=simulated
         )
-        with new_results_folder(place) as folder:
+        with new_results_folder(place, kind="record") as folder:
             write_record_report(result, folder)
-            mark_results(folder)
         _print(result)
         print(f"\nreport: {place.resolve() / 'report.html'}")
 

@@ -16,7 +16,7 @@ from trundle.signals import Isolator
 from trundle.study.build import load_study
 from trundle.study.changes import Change, each_change, every_combination
 from trundle.study.mitigation import try_changes
-from trundle.study.store import check_target, mark_results, new_results_folder
+from trundle.study.store import check_target, new_results_folder
 from trundle.study.sweep import Sweep
 from trundle.units import KMH, to_si
 from trundle.vehicle import library_vehicle
@@ -41,7 +41,7 @@ def mitigate(
 ) -> None:
     """Run every combination, print matrices and write a results folder."""
     study = load_study(path)
-    check_target(out)
+    check_target(out, "comparison")
     at = sorted(set(_each("--speeds", speeds, lambda text: to_si(text, "speed"))))
     if not at or at[0] <= 0.0:
         raise InputError(f"--speeds {speeds!r}: give speeds above 0, such as '5 km/h, 15 km/h'")
@@ -51,12 +51,11 @@ def mitigate(
         raise InputError(f"--roads {roads!r}: give road classes, such as 'A, B'")
     levers = _levers(vehicles, slabs, dampings, isolators)
     changes = every_combination(levers) if combine else each_change(levers)
-    with progress_bar() as tell, new_results_folder(out) as folder:
+    with progress_bar() as tell, new_results_folder(out, kind="comparison") as folder:
         sweep = try_changes(
             study, changes=changes, speeds=at, roads=classes, runs=runs, report=tell
         )
         write_mitigation_report(sweep, folder)
-        mark_results(folder)
     _print(sweep)
     for warning in sweep.warnings():
         print(f"warning: {warning}")

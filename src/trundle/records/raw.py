@@ -66,6 +66,7 @@ class RawRecord:
         """Return some of the channels, in that order."""
 
         def pick(values: tuple[str, ...]) -> tuple[str, ...]:
+            """Return the chosen ones of some values, or none if there are none."""
             return tuple(values[i] for i in which) if values else ()
 
         return replace(

@@ -26,6 +26,7 @@ from trundle.response import (
 )
 from trundle.signals import Averaging, Record, doubtful_channels
 from trundle.simulate import Runs
+from trundle.study.zarr_check import check_zarr
 
 __all__ = ["RecordResult", "Simulated", "assess_record", "read_simulated"]
 
@@ -179,7 +180,14 @@ def read_simulated(
     store = folder / "results.zarr"
     if not store.is_dir():
         raise InputError(f"{folder}: is no results folder of trundle (no results.zarr in it)")
-    with xr.open_zarr(store) as data:
+    check_zarr(store)
+    try:
+        data = xr.open_zarr(store, zarr_format=2)
+    except Exception as error:  # its readers raise whatever damaged metadata leads them to
+        raise InputError(f"{folder}: its results cannot be read ({type(error).__name__})") from None
+    with data:
+        if "point" not in data or "band_velocity" not in data:
+            raise InputError(f"{folder}: holds no band levels at points")
         points = [str(name) for name in data["point"].values]
         if point is not None and point not in points:
             raise InputError(f"{folder}: no point {point!r}; there are {', '.join(points)}")
@@ -190,7 +198,7 @@ def read_simulated(
                 f"which may be several times apart; say --averaging {rule}"
             )
         name = point or points[0]
-        levels = data["band_velocity"].isel(method_name=-1).sel(point=name).load()
+        levels = _decoded(data["band_velocity"].isel(method_name=-1).sel(point=name), folder)
     found = []
     for case in levels["case"].values:
         for road in levels["road"].values:
@@ -203,3 +211,13 @@ def read_simulated(
                 )
             )
     return tuple(found)
+
+
+def _decoded(levels: xr.DataArray, folder: Path) -> xr.DataArray:
+    """Return levels in memory; damaged ones are named."""
+    try:
+        return levels.load()
+    except Exception as error:  # codecs raise whatever damage leads them to
+        raise InputError(
+            f"{folder}: its band levels are damaged ({type(error).__name__}); run the study again"
+        ) from None

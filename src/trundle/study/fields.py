@@ -19,6 +19,7 @@ __all__ = [
     "Factor",
     "Flag",
     "Frequency",
+    "GroupName",
     "Length",
     "Line",
     "Mass",
@@ -118,11 +119,25 @@ def _check_name(value: str) -> str:
     return value
 
 
+# Coordinates of the results: a group below them cannot have such a name.
+_TAKEN = {
+    "band", "case", "contact", "method_name", "peak_contact_force", "point", "road", "run",
+}  # fmt: skip
+
+
+def _check_group_name(value: str) -> str:
+    if _check_name(value) in _TAKEN:
+        rule = "must not be a name that the results have for themselves"
+        raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+    return value
+
+
 Flag: TypeAlias = Annotated[bool, Strict()]
 Whole: TypeAlias = Annotated[int, Strict()]
 Number: TypeAlias = Annotated[float, Strict()]
 Line: TypeAlias = Annotated[str, Strict(), AfterValidator(_check_line)]
 Name: TypeAlias = Annotated[str, AfterValidator(_check_name)]
+GroupName: TypeAlias = Annotated[str, AfterValidator(_check_group_name)]
 Length: TypeAlias = Annotated[float, _quantity("length")]
 PositiveLength: TypeAlias = Annotated[float, _quantity("length"), _POSITIVE]
 NonNegativeLength: TypeAlias = Annotated[float, _quantity("length"), _NON_NEGATIVE]

@@ -17,6 +17,8 @@ __all__ = ["cache_folder", "modes_of"]
 
 Progress = Callable[[float], None]
 
+_SUMS = 3  # sums of all modes by which kept ones are tried
+_OFF = 1e-6  # relative, that such a sum may be off
 _KEPT = 8  # sets of modes; the one unused for longest goes first
 
 
@@ -50,7 +52,7 @@ def modes_of(floor: Floor, *, f_max: float, progress: Progress | None = None) ->
     # other studies left must not change this one's.
     name = f"{floor.content_hash}-{f_max:.9g}-{available_backends()[0]}.npz"
     file = None if folder is None else folder / name
-    kept = None if file is None else _read(file, floor.n_dofs)
+    kept = None if file is None else _read(file, floor)
     if kept is not None and kept.f_max == f_max:
         return kept
     modes = natural_modes(floor.mass, floor.stiffness, f_max=f_max, progress=progress)
@@ -59,7 +61,7 @@ def modes_of(floor: Floor, *, f_max: float, progress: Progress | None = None) ->
     return modes
 
 
-def _read(file: Path, n_dofs: int) -> Modes | None:
+def _read(file: Path, floor: Floor) -> Modes | None:
     """Return what a file holds; None if there is none, or it cannot be what it should."""
     try:
         with file.open("rb") as opened, np.load(opened, allow_pickle=False) as data:
@@ -72,8 +74,30 @@ def _read(file: Path, n_dofs: int) -> Modes | None:
         os.utime(file)
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
         return None
-    right = modes.shapes.shape == (n_dofs, len(modes.omega)) and np.isfinite(modes.shapes).all()
-    return modes if right else None
+    return modes if _are_of(floor, modes) else None
+
+
+def _are_of(floor: Floor, modes: Modes) -> bool:
+    """Return whether modes are those of a floor, by sums with random signs.
+
+    With signs s, ``K Phi s / lambda = M Phi s``, and ``|Phi s|^2`` by the mass is the number of
+    modes; one spoiled number anywhere breaks either, and each costs a product with the shapes.
+    """
+    n = len(modes.omega)
+    if modes.shapes.shape != (floor.n_dofs, n) or modes.residuals.shape != (n,) or n == 0:
+        return False
+    sound = np.isfinite(modes.shapes).all() and np.isfinite(modes.omega).all()
+    rising = modes.omega[0] > 0.0 and bool(np.all(np.diff(modes.omega) >= 0.0))
+    if not sound or not rising or modes.frequencies[-1] >= modes.f_max:
+        return False
+    signs = np.random.default_rng(n).choice([-1.0, 1.0], size=(n, _SUMS))
+    held = floor.stiffness @ (modes.shapes @ (signs / modes.omega[:, None] ** 2))
+    both = modes.shapes @ signs
+    moved = floor.mass @ both
+    off = np.linalg.norm(held - moved, axis=0) / np.linalg.norm(moved, axis=0)
+    return bool(
+        np.all(off < _OFF) and np.all(np.abs(np.sum(both * moved, axis=0) / n - 1.0) < _OFF)
+    )
 
 
 def _write(file: Path, modes: Modes) -> None:

@@ -17,6 +17,7 @@ from trundle.study.fields import (
     Factor,
     Flag,
     Frequency,
+    GroupName,
     Length,
     Line,
     Mass,
@@ -205,7 +206,7 @@ class RoughnessSection(Section):
 class RouteSection(Section):
     """Where a vehicle drives, and how fast."""
 
-    name: Name
+    name: GroupName
     vehicle: Name
     path: Annotated[tuple[Place, ...], Field(min_length=2)]
     speed: Speed
@@ -215,7 +216,7 @@ class RouteSection(Section):
 class TrafficSection(Section):
     """Several routes driven at once."""
 
-    name: Name
+    name: GroupName
     routes: Annotated[tuple[Name, ...], Field(min_length=2)]
 
 
@@ -246,7 +247,7 @@ class DampingSection(Section):
 class MethodSection(Section):
     """How vehicle and floor are computed."""
 
-    name: Name
+    name: GroupName
     interaction: Literal["decoupled", "coupled"]
     integration: Literal["modal", "newmark"] = "modal"
     f_max: Frequency | None = None

@@ -23,41 +23,36 @@ from trundle.errors import InputError
 from trundle.response import percentile_interval
 from trundle.study.cells import Cell
 from trundle.study.datasets import plain, result_groups
+from trundle.study.owned import check_owned, record_owned
 from trundle.study.run import StudyResult, positions_at
 
 __all__ = [
     "check_target",
-    "mark_results",
     "new_results_folder",
     "provenance",
     "uninterrupted",
     "write_results",
 ]
 
-_MARK = ".trundle-results"
-_OURS = {
-    _MARK,
-    "figures",
-    "levels.csv",
-    "report.html",
-    "results.zarr",
-    "study.toml",
-    "summary.csv",
-    "summary.json",
-    "verdicts.csv",
-}
 
-
-def check_target(folder: Path) -> None:
+def check_target(folder: Path, kind: str = "study") -> None:
     """Refuse a results folder that cannot be written, before any work starts.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder.
+    kind : str
+        What will be written there: results of a study, of a record, or of changes.
 
     Raises
     ------
     InputError
         A file in its place, a folder that holds something else, or no permission.
     """
+    folder = _normal(folder)
     try:
-        _check_place(folder)
+        _check_place(folder, kind)
     except OSError as error:
         raise InputError(
             f"results folder {folder}: {error.strerror or error}; choose another with --out"
@@ -75,7 +70,7 @@ def check_target(folder: Path) -> None:
         ) from None
 
 
-def _check_place(folder: Path) -> None:
+def _check_place(folder: Path, kind: str) -> None:
     if folder.is_symlink():
         raise InputError(f"results folder {folder} is a link; name the folder itself with --out")
     if folder.exists() and not folder.is_dir():
@@ -86,13 +81,12 @@ def _check_place(folder: Path) -> None:
         return
     if folder.resolve() == Path.cwd():
         raise InputError("the results folder must not be the current folder; name one with --out")
-    foreign = {entry.name for entry in folder.iterdir()} - _OURS
-    if foreign or (any(folder.iterdir()) and not (folder / _MARK).is_file()):
-        raise InputError(
-            f"results folder {folder} holds files that trundle did not write"
-            + (f" ({', '.join(sorted(foreign)[:3])})" if foreign else "")
-            + "; choose another with --out, or empty it"
-        )
+    check_owned(folder, kind)
+
+
+def _normal(folder: Path) -> Path:
+    """Return an absolute path without steps back: ``o/../o`` is ``o``."""
+    return Path(os.path.normpath(folder.absolute()))
 
 
 def _nearest_folder(folder: Path) -> Path:
@@ -103,15 +97,18 @@ def _nearest_folder(folder: Path) -> Path:
 
 
 @contextmanager
-def new_results_folder(folder: Path, *, within: Path | None = None) -> Generator[Path]:
+def new_results_folder(
+    folder: Path, *, within: Path | None = None, kind: str = "study"
+) -> Generator[Path]:
     """Give a folder to fill; it takes its place only when all went well.
 
-    It is filled beside its place, or `within` a folder of the same file system.
+    It is filled beside its place, or `within` a folder of the same file system. What is written is
+    recorded; of an earlier result nothing goes that is not on its own list, and of the same kind.
 
     An earlier result of that name is replaced at the end; after an error or an interrupt it
     still stands, and the half-filled folder is gone.
     """
-    folder = folder.absolute()
+    folder = _normal(folder)
     made = [parent for parent in folder.parents if not parent.exists()]
     folder.parent.mkdir(parents=True, exist_ok=True)
     aside = Path(tempfile.mkdtemp(dir=within or folder.parent, prefix=".trundle-"))
@@ -119,7 +116,8 @@ def new_results_folder(folder: Path, *, within: Path | None = None) -> Generator
         aside.chmod(0o755)
         yield aside
         with uninterrupted():
-            _swap(aside, folder)
+            record_owned(aside, kind)
+            _swap(aside, folder, kind)
     finally:
         with uninterrupted():
             shutil.rmtree(aside, ignore_errors=True)
@@ -150,10 +148,17 @@ def uninterrupted() -> Generator[None]:
         raise KeyboardInterrupt
 
 
-def _swap(new: Path, place: Path) -> None:
+def _swap(new: Path, place: Path, kind: str) -> None:
+    """Put new results in the place of earlier ones; if those hold more by now, beside them."""
     if not place.exists():
         os.rename(new, place)
         return
+    try:
+        check_owned(place, kind)
+    except InputError as error:
+        beside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f"{place.name}-"))
+        os.rename(new, beside)
+        raise InputError(f"{error}; the new results are in {beside}") from None
     old = Path(tempfile.mkdtemp(dir=place.parent, prefix=".trundle-old-"))
     os.rename(place, old / "old")
     os.rename(new, place)
@@ -197,7 +202,6 @@ def write_results(result: StudyResult, folder: Path) -> None:
     }
     text = json.dumps(plain(summary), indent=1, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
-    mark_results(folder)
 
 
 def _write_csv(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
@@ -214,11 +218,6 @@ def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
         for name, value in row.items()
         if not isinstance(value, dict)
     }
-
-
-def mark_results(folder: Path) -> None:
-    """Mark a folder as one that trundle wrote, and may replace."""
-    (folder / _MARK).write_text("A later run of trundle may replace this folder.\n")
 
 
 def summary_rows(result: StudyResult) -> Iterator[dict[str, Any]]:

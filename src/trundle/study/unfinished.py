@@ -1,7 +1,7 @@
 """Keep the pieces of a study as they are finished, so that a run that is stopped can go on.
 
-Each piece is a group of a zarr store, written aside and renamed into place: after a kill at any
-moment a piece is there whole or not at all.
+Each piece is a file with a checksum, written aside and renamed into place: after a kill at any
+moment a piece is there whole or not at all, and one that was altered is computed again.
 """
 
 from __future__ import annotations
@@ -12,21 +12,24 @@ import os
 import shutil
 from collections.abc import Generator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-import zarr
 
 from trundle import __version__
-from trundle.errors import InputError
+from trundle.errors import ComputationError, InputError
+from trundle.study.fingerprint import digest_of
+from trundle.study.kept import read_kept, refuse_links, write_kept
 from trundle.study.model import Study
 from trundle.study.pieces import Piece
 
 __all__ = ["InMemory", "OnDisk", "PieceStore", "unfinished_folder", "unfinished_of"]
 
 _MARK = "trundle-unfinished.json"
-_FORMAT = 3  # of the pieces; another one starts anew
+_NOTES = "notes as JSON"
+_FORMAT = 4  # of the pieces; another one starts anew
 
 
 @runtime_checkable
@@ -66,42 +69,54 @@ class InMemory:
 
 
 class OnDisk:
-    """Keep pieces in a folder, each whole or not at all."""
+    """Keep pieces in a folder, each in a file that is whole or not at all."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._store = folder / "pieces.zarr"
-        zarr.open_group(self._store, mode="a", zarr_format=2)
-        # What a killed process was writing.
-        for aside in [*self._store.glob(".writing-*"), *folder.glob(".trundle-*")]:
+        self._store = folder / "pieces"
+        self._store.mkdir(exist_ok=True)
+        for aside in self._store.glob(".writing-*"):  # what a killed process was writing
+            aside.unlink(missing_ok=True)
+        for aside in folder.glob(".trundle-*"):
             shutil.rmtree(aside, ignore_errors=True)
-        self.n_found = sum(1 for entry in self._store.iterdir() if entry.is_dir())
+        # What does not hold against its checksum is computed again.
+        self._sound = {file.stem for file in self._files() if read_kept(file) is not None}
+
+    @property
+    def n_found(self) -> int:
+        """How many sound pieces are there."""
+        return len(self._sound)
 
     def has(self, name: str) -> bool:
         """Return whether a piece is there."""
-        return (self._store / name).is_dir()
+        return name in self._sound
 
     def save(self, name: str, piece: Piece) -> None:
         """Write a piece aside, then rename it into place."""
-        aside = self._store / f".writing-{os.getpid()}-{name}"
-        group = zarr.open_group(aside, mode="w", zarr_format=2)
-        for key, values in piece.arrays.items():
-            group.create_array(key, data=np.ascontiguousarray(values))
-        group.attrs["notes"] = json.dumps(piece.notes)
-        with suppress(OSError):  # another process has finished the same piece meanwhile
-            os.rename(aside, self._store / name)
-        shutil.rmtree(aside, ignore_errors=True)
+        notes = np.frombuffer(json.dumps(piece.notes).encode(), dtype=np.uint8)
+        write_kept(self._file(name), {**piece.arrays, _NOTES: notes})
+        self._sound.add(name)
 
     def load(self, name: str) -> Piece:
         """Return a piece that is there."""
-        group = zarr.open_group(self._store / name, mode="r", zarr_format=2)
-        arrays = {key: np.asarray(array[...]) for key, array in group.arrays()}
-        return Piece(arrays=arrays, notes=json.loads(str(group.attrs["notes"])))
+        arrays = read_kept(self._file(name))
+        if arrays is None:
+            raise ComputationError(
+                f"{self._file(name)}: was altered while the run went on; run it again"
+            )
+        notes = json.loads(arrays.pop(_NOTES).tobytes().decode())
+        return Piece(arrays=arrays, notes=notes)
+
+    def _files(self) -> list[Path]:
+        return sorted(self._store.glob("*.piece"))
+
+    def _file(self, name: str) -> Path:
+        return self._store / f"{name}.piece"
 
 
 def unfinished_folder(out: Path) -> Path:
     """Return where the pieces of a run into a results folder are kept until it is done."""
-    out = out.absolute()
+    out = Path(os.path.normpath(out.absolute()))
     return out.with_name(f"{out.name}.unfinished")
 
 
@@ -126,6 +141,7 @@ def unfinished_of(study: Study, out: Path, *, fresh: bool = False) -> Generator[
         Another process works on the same results, or the folder is somebody else's.
     """
     folder = unfinished_folder(out)
+    refuse_links(folder)
     mark = folder / _MARK
     if folder.exists() and not mark.is_file() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError(
@@ -137,13 +153,13 @@ def unfinished_of(study: Study, out: Path, *, fresh: bool = False) -> Generator[
     with _locked(folder / "lock"):
         fingerprint = _fingerprint(study)
         if fresh or not mark.is_file() or mark.read_text("utf-8") != fingerprint:
-            shutil.rmtree(folder / "pieces.zarr", ignore_errors=True)
+            shutil.rmtree(folder / "pieces", ignore_errors=True)
             mark.write_text(fingerprint, "utf-8")
         store = OnDisk(folder)
         try:
             yield store
         except BaseException:
-            if not any(entry.is_dir() for entry in (folder / "pieces.zarr").iterdir()):
+            if not store.n_found:
                 _remove(folder, made)
             raise
         _remove(folder, [])
@@ -164,6 +180,8 @@ def _fingerprint(study: Study) -> str:
         "numpy": np.__version__,
         "study": hashlib.sha256(study.text.encode()).hexdigest(),
         "floor": study.floor.content_hash,
+        # also of what the study's file only names: criteria, profiles, tables
+        "content": digest_of(replace(study, source="")),
     }
     return json.dumps(values, indent=1) + "\n"
 

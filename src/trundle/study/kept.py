@@ -1,0 +1,84 @@
+"""Keep arrays in a file whose content is held against a checksum before it is believed."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trundle._typing import Array
+from trundle.errors import InputError
+
+__all__ = ["read_kept", "refuse_links", "write_kept"]
+
+_DIGEST = 32  # bytes of SHA-256 before the arrays
+
+
+def write_kept(file: Path, arrays: Mapping[str, Array]) -> None:
+    """Write arrays aside, have the disk hold them, and rename: whole or not at all.
+
+    Parameters
+    ----------
+    file : Path
+        Where they go; an earlier file of that name is replaced.
+    arrays : mapping of str to ndarray
+        Numbers; their names may hold anything but a slash.
+    """
+    packed = io.BytesIO()
+    named: dict[str, Any] = {name: np.ascontiguousarray(v) for name, v in arrays.items()}
+    np.savez(packed, **named)
+    data = packed.getvalue()
+    number, aside = tempfile.mkstemp(dir=file.parent, prefix=".writing-")
+    try:
+        with os.fdopen(number, "wb") as opened:
+            opened.write(hashlib.sha256(data).digest())
+            opened.write(data)
+            opened.flush()
+            os.fsync(number)
+        os.replace(aside, file)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(aside)
+        raise
+
+
+def read_kept(file: Path) -> dict[str, Array] | None:
+    """Return the arrays of a file; None if it is not there, or not what was written.
+
+    Nothing in it is unpickled.
+    """
+    try:
+        with file.open("rb") as opened:
+            digest, data = opened.read(_DIGEST), opened.read()
+        if hashlib.sha256(data).digest() != digest:
+            return None
+        with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
+            return {name: arrays[name] for name in arrays.files}
+    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile):
+        return None
+
+
+def refuse_links(folder: Path) -> None:
+    """Refuse a folder that is a link or holds one: writing would reach what it points to.
+
+    Raises
+    ------
+    InputError
+        A link.
+    """
+    if not folder.is_symlink() and not folder.exists():
+        return
+    links = [folder] if folder.is_symlink() else [p for p in folder.rglob("*") if p.is_symlink()]
+    if links:
+        raise InputError(
+            f"{links[0]} is a link, and trundle writes none: whatever it points to would be "
+            "written over; remove it, or choose another results folder with --out"
+        )

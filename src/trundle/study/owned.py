@@ -1,0 +1,84 @@
+"""Record what was written into a results folder, so that nothing else is ever replaced."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+
+from trundle.errors import InputError
+
+__all__ = ["MARK", "check_owned", "record_owned"]
+
+MARK = ".trundle-results"
+
+
+def record_owned(folder: Path, kind: str) -> None:
+    """Write down every file of a folder with its hash, and what kind of results they are.
+
+    Parameters
+    ----------
+    folder : Path
+        Results that are complete.
+    kind : str
+        Of a study, a record or changes; one kind never replaces another.
+    """
+    files = {name: _hash(path) for name, path in _files(folder).items()}
+    text = json.dumps({"kind": kind, "files": files}, indent=1)
+    (folder / MARK).write_text(text + "\n", encoding="utf-8")
+
+
+def check_owned(folder: Path, kind: str) -> None:
+    """Refuse to replace a folder that holds anything that this program did not write.
+
+    Parameters
+    ----------
+    folder : Path
+        A folder that is there.
+    kind : str
+        What would replace it.
+
+    Raises
+    ------
+    InputError
+        Files added or changed since, links, results of another kind.
+    """
+    if not any(folder.iterdir()):
+        return
+    remedy = "; choose another with --out, or move them away"
+    try:
+        said = json.loads((folder / MARK).read_text("utf-8"))
+        known, own_kind = dict(said["files"]), str(said["kind"])
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError(
+            f"results folder {folder} holds files that trundle did not write, or no list of those "
+            f"that it wrote{remedy}"
+        ) from None
+    if own_kind != kind:
+        raise InputError(f"results folder {folder} holds results of a {own_kind}{remedy}")
+    there = _files(folder)
+    odd = sorted(name for name in there if name not in known or known[name] != _hash(there[name]))
+    if odd:
+        named = ", ".join(odd[:3]) + (" ..." if len(odd) > 3 else "")
+        raise InputError(
+            f"results folder {folder} holds files that trundle did not write, or that were changed "
+            f"since ({named}){remedy}"
+        )
+
+
+def _files(folder: Path) -> dict[str, Path]:
+    """Return all files below a folder but the list itself, links and empty folders too."""
+    found = {
+        str(path.relative_to(folder)): path
+        for path in folder.rglob("*")
+        if path.is_symlink() or not path.is_dir() or not any(path.iterdir())
+    }
+    found.pop(MARK, None)
+    return found
+
+
+def _hash(path: Path) -> str:
+    if path.is_symlink() or not path.is_file():
+        return "link" if path.is_symlink() else "folder" if path.is_dir() else "other"
+    with path.open("rb") as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()

@@ -15,8 +15,8 @@ from trundle.errors import ComputationError, InputError
 
 __all__ = ["app", "main"]
 
-BAD_INPUT, FAILED, INTERRUPTED = 2, 1, 130
-"""Exit codes: input that breaks a rule, mathematics that failed, Ctrl-C."""
+BAD_INPUT, FAILED, NOT_MET, INTERRUPTED = 2, 1, 3, 130
+"""Exit codes: input that breaks a rule, mathematics that failed, --fail-on, Ctrl-C."""
 
 app = typer.Typer(
     name="trundle",
@@ -25,7 +25,7 @@ app = typer.Typer(
     "it with 'trundle run unit.toml': tables on the screen, and a results folder with "
     "report.html, results.zarr, summary.csv and figures.",
     no_args_is_help=True,
-    add_completion=False,
+    add_completion=True,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -51,6 +51,7 @@ def _root(
 @app.command()
 def run(
     study: StudyPath,
+    *,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Results folder. \\[default: STUDY's name + '-results']"),
@@ -68,6 +69,7 @@ def run(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Begin anew: leave aside what a stopped run finished.")
     ] = False,
+    fail_on: options.FailOn = None,
 ) -> None:
     """Run a study: progress bars, tables on the screen, a results folder with report.html.
 
@@ -78,7 +80,11 @@ def run(
     from trundle.cli import run_command
 
     place = out or Path(f"{study.stem}-results")
-    run_command.run(study, place, workers=workers, scheduler=scheduler, fresh=fresh)
+    unmet = run_command.run(
+        study, place, workers=workers, scheduler=scheduler, fresh=fresh, fail_on=fail_on or ()
+    )
+    if unmet:
+        raise typer.Exit(NOT_MET)
 
 
 @app.command()
@@ -98,6 +104,7 @@ def assess(
     simulation: options.Simulation = None,
     point: options.Point = None,
     out: options.RecordOut = None,
+    fail_on: options.FailOn = None,
 ) -> None:
     r"""Assess measured records against the same criteria, with the same levels and figures.
 
@@ -111,7 +118,7 @@ def assess(
     said = RecordOptions(
         unit=unit, rate=rate, sensitivity=sensitivity, full_scale=full_scale, channel=channel
     )
-    assess_command.assess(
+    unmet = assess_command.assess(
         files,
         said,
         criteria=criteria,
@@ -122,7 +129,10 @@ def assess(
         simulation=simulation,
         point=point,
         out=out,
+        fail_on=fail_on or (),
     )
+    if unmet:
+        raise typer.Exit(NOT_MET)
 
 
 @app.command()

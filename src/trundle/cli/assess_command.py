@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import get_args
 
 import numpy as np
 
 from trundle._checks import one_of
+from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.screen import print_table
 from trundle.criteria import VC, Criterion, Shape, find_criterion, shaped
 from trundle.errors import InputError
@@ -34,11 +36,16 @@ def assess(
     simulation: Path | None,
     point: str | None,
     out: Path | None,
-) -> None:
-    """Assess records one by one; write a results folder for each."""
+    fail_on: Sequence[str] = (),
+) -> bool:
+    """Assess records one by one; write a results folder for each.
+
+    Return whether a criterion asked for is unmet by any.
+    """
     rule: Averaging = one_of("--averaging", averaging, get_args(Averaging))  # pyright: ignore
     one_of("--shape", shape, get_args(Shape))
     curves = shaped(_curves(criteria), shape)  # pyright: ignore[reportArgumentType] - checked
+    check_fail_on(fail_on, curves)
     if point is not None and simulation is None:
         raise InputError("--point names a point of a study: say which by --simulation")
     limit = to_si(high_pass, "frequency")
@@ -55,6 +62,7 @@ def assess(
         () if simulation is None else read_simulated(simulation, point=point, averaging=rule)
     )
     records = [read_record(file, options) for file in files]
+    unmet = False
     for record, place in zip(records, places, strict=True):
         result = assess_record(
             record, curves, averaging=rule, high_pass=limit, events=events, simulated=simulated
@@ -63,6 +71,8 @@ def assess(
             write_record_report(result, folder)
         _print(result)
         print(f"\nreport: {place.resolve() / 'report.html'}")
+        unmet |= say_unmet(fail_on, ((f"{record.source}, ", v) for v in result.verdicts))
+    return unmet
 
 
 def _curves(text: str) -> tuple[Criterion, ...]:

@@ -11,6 +11,7 @@ __all__ = [
     "Averaging",
     "Criteria",
     "Events",
+    "FailOn",
     "FullScale",
     "HighPass",
     "Point",
@@ -37,6 +38,14 @@ Sensitivity = Annotated[
 ]
 FullScale = Annotated[
     str, typer.Option("--full-scale", help="What a WAV file's largest number is: '20 m/s2'.")
+]
+FailOn = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fail-on",
+        metavar="CRITERION",
+        help="End with exit code 3 where it is failed or not assessed; may be given several times.",
+    ),
 ]
 Channel = Annotated[
     str,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.result_tables import print_result
 from trundle.cli.screen import progress_bar
 from trundle.errors import InputError
@@ -33,11 +34,20 @@ def _cluster(workers: int | None, scheduler: str | None) -> Generator[Cluster | 
         yield None
 
 
-def run(path: Path, out: Path, *, workers: int | None, scheduler: str | None, fresh: bool) -> None:
-    """Run a study and write its results folder."""
+def run(
+    path: Path,
+    out: Path,
+    *,
+    workers: int | None,
+    scheduler: str | None,
+    fresh: bool,
+    fail_on: Sequence[str] = (),
+) -> bool:
+    """Run a study and write its results folder; return whether a criterion asked for is unmet."""
     if workers is not None and scheduler is not None:
         raise InputError("--workers starts a cluster and --scheduler uses one: give one of them")
     study = load_study(path)
+    check_fail_on(fail_on, () if study.assessment is None else study.assessment.criteria)
     check_target(out)
     for warning in study_doubts(study):
         print(f"warning: {warning}")
@@ -61,3 +71,11 @@ def run(path: Path, out: Path, *, workers: int | None, scheduler: str | None, fr
         write_report(result, folder, tell=lambda what, share: tell(what, 0.95 + 0.05 * share))
     print_result(result)
     print(f"\nreport: {place / 'report.html'}")
+    return say_unmet(
+        fail_on,
+        (
+            (f"{key.case}, class {key.road}, ", verdict)
+            for key, verdicts in result.verdicts.items()
+            for verdict in verdicts
+        ),
+    )

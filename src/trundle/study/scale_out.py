@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import os
 from collections.abc import Callable, Generator, Iterable
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
+from trundle import __version__
 from trundle.dynamics import repeatable
 from trundle.errors import ComputationError, InputError
 from trundle.simulate import PreparedFloor, prepare
@@ -67,12 +70,23 @@ class Cluster:
         distributed = _distributed()
         while self._pending:
             if wait:
-                distributed.wait(list(self._pending), return_when="FIRST_COMPLETED")
+                # parts that were lost with a worker end the waiting, and are sent again below
+                with suppress(distributed.CancelledError):
+                    distributed.wait(list(self._pending), return_when="FIRST_COMPLETED")
+                self._check_alive()
             ready = [future for future in self._pending if future.done()]
             for future in ready:
                 self._take(future, done)
             if not wait:
                 return
+
+    def _check_alive(self) -> None:
+        """Stop with a name if the scheduler is gone: nothing would ever be done again."""
+        if self._client.status not in {"running", "connecting"}:
+            raise ComputationError(
+                "the scheduler of the cluster was lost; what was finished is kept, and the same "
+                "command goes on from there"
+            )
 
     def _take(self, future: Any, done: Done) -> None:  # noqa: ANN401
         """Hand over a part's piece, or send the part again if what it needs died with a worker."""
@@ -81,6 +95,7 @@ class Cluster:
         try:
             done(what.name, future.result())
         except distributed.CancelledError as error:
+            self._check_alive()
             if what.tries > _RETRIES:
                 raise ComputationError(
                     f"the cluster was lost while it computed {what.name}"
@@ -131,7 +146,10 @@ def _compute(job: Job, carrier: LaidOut | Floor, part: int) -> Piece:
 
 @contextmanager
 def local_cluster(n_workers: int) -> Generator[Cluster]:
-    """Start so many workers on this machine, listening on loopback alone.
+    """Start so many workers on this machine, listening on loopback alone, for this process alone.
+
+    What reaches a port of a dask cluster may run anything: all ports ask for keys that are made
+    for this run, and there is no page.
 
     Parameters
     ----------
@@ -139,15 +157,29 @@ def local_cluster(n_workers: int) -> Generator[Cluster]:
         Number of processes; they share the machine's processors.
     """
     distributed = _distributed()
+    from dask import config  # noqa: PLC0415 - comes with it
+
     threads = str(max(1, (os.cpu_count() or 1) // n_workers))
     names = ("TRUNDLE_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+    try:
+        keys = distributed.Security.temporary()
+    except ImportError:
+        raise InputError(
+            "--workers needs the package cryptography, for keys that keep other users of this "
+            "machine out: pip install 'trundle[cluster]'"
+        ) from None
+    no_pages = {"distributed.scheduler.http.routes": [], "distributed.worker.http.routes": []}
     with (
+        config.set(no_pages),
         distributed.LocalCluster(
             n_workers=n_workers,
             threads_per_worker=1,
             processes=True,
             host="127.0.0.1",
-            dashboard_address=None,
+            protocol="tls",
+            security=keys,
+            dashboard_address="127.0.0.1:0",
+            worker_dashboard_address="127.0.0.1:0",
             silence_logs=logging.ERROR,
             env=dict.fromkeys(names, threads),
         ) as cluster,
@@ -174,7 +206,39 @@ def cluster_at(address: str) -> Generator[Cluster]:
             "start one with 'dask scheduler', or use --workers"
         ) from None
     with client:
+        _check_workers(client, address)
         yield Cluster(client)
+
+
+def source_hash() -> str:
+    """Return a hash of this program's own source: versions may lie, and be edited in place."""
+    root = Path(__file__).resolve().parent.parent
+    found = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        found.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    return found.hexdigest()
+
+
+def _own_source() -> str:
+    """Return the hash of this process's source."""
+    return source_hash()
+
+
+def _check_workers(client: Any, address: str) -> None:  # noqa: ANN401
+    """Refuse workers with another source: what they compute would be stored as this one's."""
+    own = _own_source()
+    try:
+        theirs = client.run(source_hash, on_error="return")
+    except Exception as error:  # a scheduler that dies here raises one of many
+        raise InputError(
+            f"--scheduler {address!r}: its workers do not answer ({type(error).__name__})"
+        ) from None
+    others = sorted(worker for worker, found in theirs.items() if found != own)
+    if others:
+        raise InputError(
+            f"--scheduler {address!r}: {len(others)} of its workers have another trundle than this "
+            f"process ({__version__}), the first at {others[0]}; install the same one there"
+        )
 
 
 def _distributed() -> Any:  # noqa: ANN401

@@ -14,6 +14,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from trundle.errors import Problem, StudyError
 from trundle.study import schema
+from trundle.study.rules import rule_of
 from trundle.vehicle import RETIRED, VEHICLES
 
 __all__ = ["StudyFile", "read_study", "read_text"]
@@ -287,7 +288,7 @@ def _problem(error: dict[str, Any], place: str, kind: Any, data: Mapping[str, An
     return Problem(
         place=path,
         value=_show(error["input"]),
-        rule=str(error["msg"]),
+        rule=rule_of(error),
         remedy=_remedy(error),
     )
 

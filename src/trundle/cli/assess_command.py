@@ -104,17 +104,18 @@ def _print(result: RecordResult) -> None:
     )
     print_table(
         f"Verdict, averaging {result.averaging}; margin = limit / level",
-        ("channel", "criterion", "verdict", "margin", "band [Hz]", "after [s]"),
+        ("channel", "axis", "criterion", "verdict", "margin", "band [Hz]", "after [s]"),
         (
             (
                 v.point,
+                v.axis,
                 v.criterion.title,
                 v.status,
                 *("" if np.isnan(x) else f"{x:.3g}" for x in (v.margin, v.governing_band, v.time)),
             )
             for v in result.verdicts
         ),
-        text_columns=3,
+        text_columns=4,
     )
     for warning in result.warnings:
         print(f"warning: {warning}")

@@ -97,6 +97,7 @@ def _summary(result: RecordResult) -> dict[str, Any]:
         "verdicts": [
             {
                 "channel": v.point,
+                "axis": v.axis,
                 "criterion": v.criterion.name,
                 "verdict": v.status,
                 "margin": v.margin,
@@ -105,6 +106,7 @@ def _summary(result: RecordResult) -> dict[str, Any]:
                 "limit_si": v.limit,
                 "time_s": v.time,
                 "unresolved_bands_hz": list(v.unresolved),
+                "reasons": list(v.reasons) if v.status == "not assessed" else [],
             }
             for v in result.verdicts
         ],

@@ -27,15 +27,16 @@ _PERIODS = 8.0  # of a band's mid-frequency, that a record must hold to show it
 _LEAST = 32  # samples
 _SLOWEST = 2.5  # samples per second: 1 Hz is the lowest band
 
+_OF = r"(?:^|[^a-z])(?:a|v|acc|accel|acceleration|vel|velocity)?[ _.-]*"
 _VERTICAL = re.compile(
-    r"(?:^|[^a-z])(?:a|v|acc|acceleration|vel|velocity)?[ _.-]*"
-    r"(?:z|vert|vertical|vertikal|verticale|up|ud)(?:$|[^a-z])|(?:^|[ ._])[a-z][a-z]z$",
+    _OF + r"(?:z|vert|vertical|vertikal|verticale|up|ud)(?:$|[^a-z])|(?:^|[ ._])[a-z][hnl]z$",
     re.IGNORECASE,
 )
+# N and E alone, or behind what they are of: "hall E" and "point N" are places, and a place that is
+# weighted as if it moved sideways would pass what it must not
 _SIDEWAYS = re.compile(
-    r"(?:^|[^a-z])(?:a|v|acc|acceleration|vel|velocity)?[ _.-]*"
-    r"(?:x|y|n|e|ns|ew|north|east|hor|horizontal|lateral|longitudinal|radial|transverse)"
-    r"(?:$|[^a-z])|(?:^|[ ._])[bhe][hnl][ne12]$",
+    _OF + r"(?:x|y|hor|horizontal|lateral|longitudinal|radial|transverse)(?:$|[^a-z])"
+    r"|^(?:a|v|acc|vel)?[_.-]?(?:n|e|ns|ew|north|east)$|(?:^|[ ._])[a-z][hnl][ne12]$",
     re.IGNORECASE,
 )
 

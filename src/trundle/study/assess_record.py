@@ -138,14 +138,7 @@ def assess_record(
         reduced, many, percentile=100.0, top=top, events=events, axes=record.axes
     )
     doubtful = doubtful_channels(record)
-    short = record.channel_names if record.lowest_frequency > 1.0 else ()
-    verdicts = tuple(
-        replace(v, status="not assessed")
-        if v.status == "pass"
-        and (v.point in doubtful or (v.point in short and v.criterion.quantity not in BY_FREQUENCY))
-        else v
-        for v in found
-    )
+    verdicts = tuple(_unless_in_doubt(verdict, record, doubtful) for verdict in found)
     return RecordResult(
         record=record,
         runs=runs,
@@ -156,6 +149,18 @@ def assess_record(
         high_pass=high_pass,
         simulated=tuple(simulated),
     )
+
+
+def _unless_in_doubt(verdict: Verdict, record: Record, doubtful: Sequence[str]) -> Verdict:
+    """Return a verdict that passes nothing whose true level may be higher."""
+    if verdict.status != "pass":
+        return verdict
+    reasons = list(verdict.reasons)
+    if verdict.point in doubtful:
+        reasons.append("the channel is clipped or hides a gap: its true levels may be higher")
+    if record.lowest_frequency > 1.0 and verdict.criterion.quantity not in BY_FREQUENCY:
+        reasons.append(f"{record.duration:.3g} s are too short for the lowest motion it weighs")
+    return replace(verdict, status="not assessed", reasons=tuple(reasons)) if reasons else verdict
 
 
 def read_simulated(

@@ -65,6 +65,9 @@ FILES = {
     "milliseconds": "Time ms,z [mg]\n" + rows(fixed(1e3 * T, 1), MG),
     "unit in the name": "time_s,acc_z_mg\n" + rows(SECONDS, MG),
     "empty last column": "time [s],z [mm/s2],\n" + rows(SECONDS, MMS2, [""] * N),
+    "long words": "Time (seconds);Z (mm/s2)\n" + rows(SECONDS, MMS2, mark=";"),
+    "unit row of other things": "Time,Z,Load\n(sec),(mm/s2),(%)\n"
+    + rows(SECONDS, MMS2, ["3"] * N),
     "quoted": '"Time (s)","Z (mm/s²)"\n' + rows(SECONDS, MMS2),
     "a word in a column": "time [s],z [mm/s2],event\n" + rows(SECONDS, MMS2, ["no"] * N),
 }  # fmt: skip
@@ -108,6 +111,9 @@ def test_units_of_velocity(tmp_path, unit, size):
 @pytest.mark.parametrize(
     ("text", "told"),
     [
+        ("time [s],z [g]\n0,1,5\n" + rows(SECONDS, MMS2), "line 2 has 3 columns of numbers"),
+        ("Sample rate: 1 kHz\ntime [s],z [g]\n" + rows(SECONDS, MMS2), "one is wrong"),
+        ("Time,z [g]\n" + rows([s[:19] + "Z" for s in ISO], MMS2), "so coarse.*--rate"),
         ("time [s],X (40g)\n" + rows(SECONDS, MMS2), "looks like the sensor's range.*--unit g"),
         ("time [s],X (+-2 g)\n" + rows(SECONDS, MMS2), "looks like the sensor's range"),
         ("time,z [g]\n" + rows(fixed(1e3 * T, 1), MMS2), r"'time \[ms\]'"),
@@ -132,6 +138,21 @@ def test_a_range_is_read_once_its_unit_is_said(tmp_path):
     record = read(tmp_path, text, RecordOptions(unit="g"))
     np.testing.assert_allclose(record.samples[0], Z, atol=1e-6 * Z.max())
     assert record.axes == ("horizontal",)
+
+
+def test_a_stated_rate_counts_where_stamps_are_coarse(tmp_path):
+    """Stamps of whole seconds over 2.4 s leave 500 Hz open to a half; the line above says it."""
+    text = "Sample rate: 500 Hz\nTime,z [mm/s2]\n" + rows([s[:19] + "Z" for s in ISO], MMS2)
+    assert read(tmp_path, text).sampling_frequency == 500.0
+
+
+def test_a_unit_said_for_all_leaves_other_quantities_alone(tmp_path):
+    text = "time [s],z,T [°C]\n" + rows(SECONDS, MMS2, ["21.5"] * N)
+    record = read(tmp_path, text, RecordOptions(unit="mm/s2"))
+    assert record.channel_names == ("z",)
+    assert record.notes[0].subject == "passed over, T"
+    with pytest.raises(InputError, match="leave one out"):
+        read(tmp_path, text.replace("z,T", "z [mg],T"), RecordOptions(unit="mm/s2"))
 
 
 def test_a_counter_beside_a_rate_is_no_channel(tmp_path):
@@ -200,8 +221,9 @@ def test_names_say_directions():
 
     for name in ("z", "Z", "acc_z", "Az", "HHZ", "XX.FLOOR..BHZ", "slab vertical", "a z", "UD"):
         assert axis_of(name) == "vertical", name
-    for name in ("x", "acc_y", "BHN", "XX.FLOOR.00.HH1", "lateral", "EW", "Ax"):
+    for name in ("x", "acc_y", "BHN", "XX.FLOOR.00.HH1", "lateral", "EW", "Ax", "N", "acc_n"):
         assert axis_of(name) == "horizontal", name
-    for name in ("hall 3", "channel 1", "Acc", "noise", "x and z", "max"):
+    # a place that was weighted as sideways motion would pass what it must not
+    for name in ("hall E", "Point N", "hall north", "2 W", "hall 3", "Acc", "x and z", "max"):
         assert axis_of(name) == "", name
     assert not any(a == b for a, b in pairwise(map(axis_of, ("x", "z", "hall"))))

@@ -89,9 +89,22 @@ def usual_unit(text: str) -> str:
 
 
 def is_unit(text: str) -> bool:
-    """Return whether a word is a unit of time, motion or volts, or a bracketed one."""
-    inner = text.strip().strip("()[]").strip()
-    if inner in {"s", "sec", "ms", "us", "µs", "min", "V", "mV", "°C", "counts", "count"}:
+    """Return whether a word is a unit of time, motion or volts, or stands in brackets."""
+    word = text.strip()
+    inner = word.strip("()[]").strip()
+    if (word[:1], word[-1:]) in {("(", ")"), ("[", "]")} or inner in {
+        "s",
+        "sec",
+        "ms",
+        "us",
+        "µs",
+        "min",
+        "V",
+        "mV",
+        "°C",
+        "counts",
+        "count",
+    }:
         return True
     return _is_motion(inner)
 
@@ -175,6 +188,6 @@ def _in_hertz(number: float, unit: str) -> float | None:
 
 def _in_seconds(number: float, unit: str) -> float | None:
     try:
-        return to_si(f"{number:.17g} {unit or 's'}".replace("sec", "s"), "time")
+        return to_si(f"{number:.17g} {unit or 's'}", "time")
     except InputError:
         return None

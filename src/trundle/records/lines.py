@@ -115,6 +115,7 @@ def find_table(text: str, path: Path) -> Layout:
     (length, width, first), mark = _best(head)
     if length < 1 or len(plain) - first < 2:
         raise InputError(f"{path}: holds no samples: no two lines of numbers stand together")
+    _refuse_numbers_above(plain[:first], numbers, (mark, width), path)
     end = _end_of_numbers(plain, mark)
     above = [(i, s) for i, s in enumerate(every[: numbers[first] - 1], 1) if s.strip()]
     heading, units, rest = _heading(above, mark, width)
@@ -130,6 +131,20 @@ def find_table(text: str, path: Path) -> Layout:
         numbers=numbers[first:end],
         left_out=[(int(numbers[i]), plain[i]) for i in range(end, len(plain))],
     )
+
+
+def _refuse_numbers_above(
+    lines: list[str], numbers: Array, table: tuple[str, int], path: Path
+) -> None:
+    """Refuse rows of numbers before the table: they are samples that would be lost."""
+    mark, width = table
+    for number, line in zip(numbers, lines, strict=False):
+        here = _width(line, mark, 1.0)
+        if here > 1:
+            raise InputError(
+                f"{path}: line {number} has {here} columns of numbers, and the table below it "
+                f"{width}; mend it, or put # before it"
+            )
 
 
 def _best(head: Sequence[str]) -> tuple[tuple[int, int, int], str]:

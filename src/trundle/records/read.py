@@ -203,9 +203,19 @@ def _unknown_unit(looks_like: str) -> str:
     )
 
 
+def _is_usable(unit: str, options: RecordOptions) -> bool:
+    try:
+        motion_scale(usual_unit(unit), options.sensitivity)
+    except InputError:
+        return False
+    return True
+
+
 def _unit(raw: RawRecord, i: int, options: RecordOptions) -> str:
     """Return the unit of a channel; what file and command line say must not differ."""
     own = raw.units[i]
+    if own and not _is_usable(own, options):
+        return own  # of a temperature, say: it contradicts nothing, and is passed over
     if own and options.unit and usual_unit(own) != usual_unit(options.unit):
         raise InputError(
             f"{raw.names[i]!r} is in {own!r} by its heading, and --unit says {options.unit!r}; "

@@ -24,6 +24,8 @@ _BOTH = re.compile(
 )
 _DAY = 86400.0
 _GAP = 2.5  # usual steps: more is a hole that no curve between samples fills
+_SHARED = 1.5  # steps: what stamps are written to, from which on samples share one
+_DOUBT = 0.01  # relative, of the rate: a tenth of a third octave's width
 _STRAY = 0.01  # of a step, that stamps may stray without a word
 _CHANGE = 0.1  # of the rate from second to second: more is another rate
 
@@ -91,7 +93,9 @@ def _seconds(clock: str) -> float:
     return half + 3600.0 * hour + 60.0 * minute + second
 
 
-def even_rate(time: Float[Array, " steps"], path: Path) -> float | None:
+def even_rate(
+    time: Float[Array, " steps"], path: Path, *, stated: float | None = None
+) -> float | None:
     """Return the sampling rate of time stamps [Hz]; None if they stray, and a curve must help.
 
     Parameters
@@ -100,11 +104,13 @@ def even_rate(time: Float[Array, " steps"], path: Path) -> float | None:
         Time stamps [s].
     path : Path
         The file, for messages.
+    stated : float, optional
+        Rate that is said elsewhere [Hz]: it counts where stamps are so coarse that they allow it.
 
     Raises
     ------
     InputError
-        Stamps that are no numbers, do not rise, have gaps, or change their rate.
+        Stamps that are no numbers, do not rise, have gaps, change their rate, or are too coarse.
     """
     if not np.isfinite(time).all():
         at = int(np.argmin(np.isfinite(time)))
@@ -118,7 +124,8 @@ def even_rate(time: Float[Array, " steps"], path: Path) -> float | None:
     decimals = next((k for k in range(10) if np.abs(time - np.round(time, k)).max() <= exact), 10)
     strays = float(np.abs(time - (time[0] + step * np.arange(len(time)))).max())
     if strays <= 10.0**-decimals + _STRAY * step:
-        return 1.0 / step
+        length = float(time[-1] - time[0])
+        return _by_coarse_stamps(step, 10.0**-decimals, length, path, stated)
     usual, at = float(np.median(steps)), int(np.argmax(steps))
     if steps[at] > _GAP * usual + 2.0 * 10.0**-decimals:
         raise InputError(
@@ -132,6 +139,21 @@ def even_rate(time: Float[Array, " steps"], path: Path) -> float | None:
             "second; cut the record where it does"
         )
     return None
+
+
+def _by_coarse_stamps(
+    step: float, finest: float, length: float, path: Path, stated: float | None
+) -> float:
+    """Return the rate that stamps give, or the stated one where several samples share a stamp."""
+    rate, doubt = 1.0 / step, finest / length
+    if finest <= _SHARED * step or doubt <= _DOUBT:
+        return rate
+    if stated is not None and abs(stated / rate - 1.0) <= doubt:
+        return stated
+    raise InputError(
+        f"{path}: its time stamps are so coarse that its rate, {rate:.3g} Hz, may be "
+        f"{100 * doubt:.2g} % off; say it by --rate"
+    )
 
 
 def on_even_time(

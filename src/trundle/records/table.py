@@ -30,6 +30,7 @@ _COUNTER = re.compile(
 _TIME_UNIT = re.compile(r"[\s_](?P<unit>s|sec|ms|us|µs|ns|min|h)$", re.IGNORECASE)
 _SLOWEST = 2.5  # Hz: stamps without a unit that say less are not seconds
 _SCALES = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
+_CONTRADICTS = 0.05  # relative: a stated rate may be nominal, and no more than so far off
 _SAME = 0.005  # relative, between a stated rate and that of stamps
 
 
@@ -80,10 +81,15 @@ def read_table(data: bytes, path: Path, *, rate: float | None = None) -> RawReco
         _refuse_unnamed_time(table, headings, path)
     samples, found = table[:, others].T.copy(), facts.rate
     if time is not None:
-        found = even_rate(time, path)
+        found = even_rate(time, path, stated=rate or facts.rate)
         if found is None:
             found, samples, note = on_even_time(time, samples)
             notes.append(note)
+        if facts.rate and abs(facts.rate / found - 1.0) > _CONTRADICTS:
+            raise InputError(
+                f"{path}: says {facts.rate:.5g} Hz above its table, and its time {found:.5g} Hz; "
+                "one is wrong"
+            )
     return RawRecord(
         samples=samples,
         rate=found,
@@ -163,7 +169,7 @@ def _tells_time(heading: Heading) -> bool:
     if not _TIME.match(heading.name):
         return False
     try:
-        return not heading.unit or to_si(f"1 {heading.unit}".replace("sec", "s"), "time") > 0.0
+        return not heading.unit or to_si(f"1 {heading.unit}", "time") > 0.0
     except InputError:
         return False
 
@@ -176,9 +182,9 @@ def _is_whole(column: Array) -> bool:
 def _scale(heading: Heading, column: Array, rate: float | None, path: Path) -> float:
     """Return a time column's unit in seconds; what is neither said nor plausible is asked for."""
     tail = _TIME_UNIT.search(heading.name)
-    unit = heading.unit or (tail["unit"].lower().replace("sec", "s") if tail else "")
+    unit = heading.unit or (tail["unit"].lower() if tail else "")
     if unit:
-        return to_si(f"1 {unit}".replace("sec", "s"), "time")
+        return to_si(f"1 {unit}", "time")
     step = float(np.median(np.diff(column)))
     if step <= 0.0 or not np.isfinite(step):
         return 1.0

@@ -118,7 +118,7 @@ def _time_scale(one: dict[str, Any], path: Path) -> float:
     if not label or label.upper() == "NONE":
         return 1.0
     try:
-        return to_si(f"1 {label}".replace("sec", "s"), "time")
+        return to_si(f"1 {label}", "time")
     except InputError as error:
         raise InputError(f"{path}: its abscissa is no time: {error}") from None
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any
 
 from matplotlib import rc_context
 
 from trundle import __version__
+from trundle._csv import write_csv
 from trundle.report.canvas import STYLE, Picture, save
 from trundle.report.figures_mitigation import class_matrix_figure, speed_figure, strictest
 from trundle.report.html import embedded, template
@@ -74,16 +74,7 @@ def write_mitigation_report(sweep: Sweep, folder: Path) -> Path:
             with rc_context(STYLE):
                 save(draw(), figures, picture.name)
             pictures.append(embedded(picture, figures))
-    with (folder / "summary.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        heads = ("change", "case", "speed_kmh", "road", "point", "criterion", "verdict", "margin")
-        writer.writerow([*heads, "governing_band_hz", "share_exceeding", "excited_to_hz"])
-        for one in sweep.outcomes:
-            for v in one.verdicts:
-                key = [one.change, one.case, f"{one.speed / KMH:g}", one.road, v.point]
-                known = (v.margin, v.governing_band, v.share_exceeding, one.excited_to)
-                values = [f"{x:.6g}" for x in known]
-                writer.writerow([*key, v.criterion.name, v.status, *values])
+    _write_summary(sweep, folder / "summary.csv")
     page = folder / "report.html"
     page.write_text(
         template("mitigation.html.j2").render(
@@ -109,3 +100,14 @@ def _middle_curve(sweep: Sweep) -> str:
         return ""
     shares = {name: sum(m >= 1.0 for m in ms) / len(ms) for name, ms in by_curve.items()}
     return min(shares, key=lambda name: abs(shares[name] - 0.5))
+
+
+def _write_summary(sweep: Sweep, file: Path) -> None:
+    heads = ("change", "case", "speed_kmh", "road", "point", "criterion", "verdict", "margin")
+    rows = []
+    for one in sweep.outcomes:
+        for v in one.verdicts:
+            key = [one.change, one.case, f"{one.speed / KMH:g}", one.road, v.point]
+            known = (v.margin, v.governing_band, v.share_exceeding, one.excited_to)
+            rows.append([*key, v.criterion.name, v.status, *(f"{x:.6g}" for x in known)])
+    write_csv(file, [*heads, "governing_band_hz", "share_exceeding", "excited_to_hz"], rows)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import numpy as np
 from matplotlib import rc_context
 
 from trundle import __version__
+from trundle._csv import write_csv
 from trundle.report import figures_record
 from trundle.report.canvas import STYLE, Picture, save
 from trundle.report.html import embedded, template
@@ -116,10 +116,9 @@ def _summary(result: RecordResult) -> dict[str, Any]:
 
 def _write_levels(result: RecordResult, file: Path) -> None:
     spectra = result.reduced.spectra
-    with file.open("w", newline="", encoding="utf-8") as opened:
-        writer = csv.writer(opened)
-        writer.writerow(["band_hz", *(f"{name} [um/s]" for name in spectra.point_names)])
-        for i, f in enumerate(spectra.mid_band):
-            levels = spectra.values[0, :, i] / MICROMETRE_PER_SECOND
-            row = ["" if np.isnan(v) else f"{v:.6g}" for v in levels]
-            writer.writerow([f"{nominal_frequency(float(f)):g}", *row])
+    rows = []
+    for i, f in enumerate(spectra.mid_band):
+        levels = spectra.values[0, :, i] / MICROMETRE_PER_SECOND
+        row = ["" if np.isnan(v) else f"{v:.6g}" for v in levels]
+        rows.append([f"{nominal_frequency(float(f)):g}", *row])
+    write_csv(file, ["band_hz", *(f"{name} [um/s]" for name in spectra.point_names)], rows)

@@ -25,6 +25,7 @@ Axis: TypeAlias = Literal["vertical", "horizontal", ""]
 _IMPLAUSIBLE = 1e4  # m/s2 or m/s
 _PERIODS = 8.0  # of a band's mid-frequency, that a record must hold to show it
 _LEAST = 32  # samples
+_LONGEST = 60  # letters of a name
 _SLOWEST = 2.5  # samples per second: 1 Hz is the lowest band
 
 _OF = r"(?:^|[^a-z])(?:a|v|acc|accel|acceleration|vel|velocity)?[ _.-]*"
@@ -147,8 +148,15 @@ def _check_length(n: int, fs: float, source: str) -> None:
         )
 
 
+def _shown(name: str) -> str:
+    """Return a name without what would steer a terminal, and not longer than a line."""
+    plain = "".join(c if c.isprintable() else "?" for c in name)
+    return plain if len(plain) <= _LONGEST else plain[: _LONGEST - 3] + "..."
+
+
 def _told_apart(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names, equal ones numbered."""
+    """Return the names, equal ones numbered; of letters that a screen shows, and short."""
+    names = tuple(_shown(name) for name in names)
     often, seen, found = Counter(names), Counter[str](), []
     for name in names:
         seen[name] += 1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import os
 import platform
@@ -19,6 +18,7 @@ import numpy as np
 import xarray as xr
 
 from trundle import __version__
+from trundle._csv import write_csv
 from trundle.errors import InputError
 from trundle.response import percentile_interval
 from trundle.study.cells import Cell
@@ -188,9 +188,9 @@ def write_results(result: StudyResult, folder: Path) -> None:
     with uninterrupted():
         _write_zarr(result, folder / "results.zarr")
     rows, verdicts = list(summary_rows(result)), list(_verdict_rows(result))
-    _write_csv(folder / "summary.csv", rows)
+    _write_rows(folder / "summary.csv", rows)
     if verdicts:
-        _write_csv(folder / "verdicts.csv", [_flat(row) for row in verdicts])
+        _write_rows(folder / "verdicts.csv", [_flat(row) for row in verdicts])
     summary = {
         "provenance": provenance(result),
         "cells": rows,
@@ -204,11 +204,8 @@ def write_results(result: StudyResult, folder: Path) -> None:
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
 
 
-def _write_csv(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
-    with file.open("w", newline="", encoding="utf-8") as opened:
-        writer = csv.DictWriter(opened, fieldnames=list(rows[0]))
-        writer.writeheader()
-        writer.writerows(rows)
+def _write_rows(file: Path, rows: Sequence[Mapping[str, Any]]) -> None:
+    write_csv(file, list(rows[0]), [list(row.values()) for row in rows])
 
 
 def _flat(row: Mapping[str, Any]) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from test_bad_input import GOOD
 from trundle.errors import InputError
 from trundle.study import load_study
 from trundle.study.assess_record import read_simulated
+from trundle.study.owned import MARK, record_owned
 from trundle.study.run import run_study
 from trundle.study.store import write_results
 
@@ -85,6 +86,15 @@ def test_codecs_that_execute_are_never_asked(results, tmp_path, where, array):
     assert trace.exists()  # it would have left one
 
 
+def test_a_store_whose_consolidated_text_alone_is_hostile_is_refused(results, tmp_path):
+    file = results / "results.zarr" / ".zmetadata"
+    said = json.loads(file.read_text())
+    said["metadata"]["case/.zarray"]["filters"] = [{"id": "pickle"}]
+    file.write_text(json.dumps(said))
+    with pytest.raises(InputError, match="codec 'pickle'"):
+        read_simulated(results)
+
+
 def test_another_format_is_not_opened(results):
     (results / "results.zarr" / "zarr.json").write_text('{"zarr_format": 3, "node_type": "group"}')
     with pytest.raises(InputError, match="does not write"):
@@ -93,11 +103,81 @@ def test_another_format_is_not_opened(results):
 
 @pytest.mark.parametrize(
     "changes",
-    [{"shape": [10**12]}, {"chunks": [-1]}, {"shape": "all"}, {"chunks": None}, {"dtype": 7}],
+    [
+        {"shape": [10**12]},
+        {"chunks": [-1]},
+        {"shape": "all"},
+        {"chunks": None},
+        {"dtype": 7},
+        {"chunks": [2**29]},
+    ],
 )
 def test_absurd_sizes_are_refused(results, changes):
     change(results, "band_velocity", **changes)
     with pytest.raises(InputError, match=r"no results have|neither numbers"):
+        read_simulated(results)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"filters": 1.5},
+        {"filters": [{"id": {}}]},
+        {"compressor": [None]},
+        {"compressor": {"id": "zlib"}},  # unpacks to a thousand times its size
+        {"dimension_separator": "/"},
+    ],
+)
+def test_odd_descriptions_are_refused(results, changes):
+    change(results, "band_velocity", **changes)
+    with pytest.raises(InputError, match=r"codec|names its chunks"):
+        read_simulated(results)
+
+
+@pytest.mark.parametrize("array", ["band_velocity", "case", "road", "method_name", "point", "band"])
+@pytest.mark.parametrize("what", ["a chunk", "all"])
+def test_what_is_missing_is_no_zero(results, array, what):
+    """Readers of zarr take a missing chunk for numbers; here it is named."""
+    folder = results / "results.zarr" / array
+    for file in [f for f in folder.iterdir() if what == "all" or not f.name.startswith(".")]:
+        file.unlink()
+    with pytest.raises(InputError, match=rf"is missing|holds no {array.replace('_', ' ')}"):
+        read_simulated(results)
+
+
+def test_a_changed_number_is_named_where_the_results_have_their_list(results):
+    record_owned(results, "study")
+    assert read_simulated(results)
+    chunk = results / "results.zarr" / "band" / "0"
+    data = bytearray(chunk.read_bytes())
+    data[-1] ^= 1
+    chunk.write_bytes(data)
+    with pytest.raises(InputError, match=r"band/0: is not as trundle wrote it"):
+        read_simulated(results)
+    chunk.unlink()
+    with pytest.raises(InputError, match="is missing"):
+        read_simulated(results)
+    (results / MARK).write_text("[]")
+    with pytest.raises(InputError, match=r"is damaged|is missing"):
+        read_simulated(results)
+
+
+def test_names_that_would_steer_a_terminal_are_refused(results):
+    store = results / "results.zarr" / "point"
+    names = np.array(["\x1b[2J"])
+    change(results, "point", dtype=names.dtype.str, compressor=None, shape=[1], chunks=[1])
+    (store / "0").write_bytes(names.tobytes())
+    with pytest.raises(InputError, match="control characters"):
+        read_simulated(results)
+
+
+@pytest.mark.parametrize("name", ["case", "road", "run", "point", "band"])
+def test_levels_along_other_axes_are_no_traceback(results, name):
+    file = results / "results.zarr" / "band_velocity" / ".zattrs"
+    said = json.loads(file.read_text())
+    said["_ARRAY_DIMENSIONS"] = ["x" if d == name else d for d in said["_ARRAY_DIMENSIONS"]]
+    file.write_text(json.dumps(said))
+    with pytest.raises(InputError, match="are damaged"):
         read_simulated(results)
 
 
@@ -106,6 +186,10 @@ def test_links_and_damage_are_refused(results, tmp_path):
     link = results / "results.zarr" / "link"
     link.symlink_to(tmp_path / "elsewhere")
     with pytest.raises(InputError, match="is a link"):
+        read_simulated(results)
+    link.unlink()
+    os.mkfifo(link)
+    with pytest.raises(InputError, match="a pipe"):
         read_simulated(results)
     link.unlink()
     (results / "results.zarr" / ".zmetadata").write_text("{" * 100_000)

@@ -1,5 +1,7 @@
 """Kept modes are the same modes, and a spoiled cache is never believed."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -88,6 +90,30 @@ def test_finite_nonsense_is_not_believed(folder, counted, what):
     again = modes_of(floor, f_max=20.0)
     assert counted == [20.0, 20.0]
     np.testing.assert_array_equal(again.shapes, right.shapes)
+
+
+class Payload:
+    """What leaves a trace when it is unpickled."""
+
+    def __init__(self, trace):
+        self.trace = str(trace)
+
+    def __reduce__(self):
+        return os.mkdir, (self.trace,)
+
+
+@pytest.mark.parametrize("name", ["omega", "shapes", "residuals", "f_max", "digest"])
+def test_pickled_arrays_are_not_unpickled(folder, counted, tmp_path, name):
+    floor = small_floor(mesh_size=2.0)
+    modes_of(floor, f_max=20.0)
+    (file,) = folder.iterdir()
+    with np.load(file) as kept:
+        arrays = {n: kept[n] for n in kept.files}
+    arrays[name] = np.array([Payload(tmp_path / "trace")], dtype=object)
+    np.savez(file, **arrays)
+    modes_of(floor, f_max=20.0)
+    assert counted == [20.0, 20.0] or name == "digest"
+    assert not (tmp_path / "trace").exists()
 
 
 def test_switched_off_or_not_writable_it_still_works(tmp_path, monkeypatch, counted):

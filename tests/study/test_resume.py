@@ -1,5 +1,6 @@
 """A run that is killed goes on, and ends with the bytes of one that was not."""
 
+import hashlib
 import io
 import os
 import signal
@@ -223,6 +224,36 @@ def test_a_piece_that_was_altered_is_not_believed(tmp_path, how):
     spoil(unfinished_folder(out) / "pieces" / f"{first}.piece", how)
     with unfinished_of(study, out) as disk:
         assert (disk.n_found, disk.has(first), disk.has(second)) == (1, False, True)
+
+
+class Payload:
+    """What leaves a trace when it is unpickled."""
+
+    def __init__(self, trace):
+        self.trace = str(trace)
+
+    def __reduce__(self):
+        return os.mkdir, (self.trace,)
+
+
+def test_a_stranger_s_piece_is_not_unpickled(tmp_path):
+    """Its checksum is right, for whoever can write a file can sum it up."""
+    path, out, trace = tmp_path / "study.toml", tmp_path / "out", tmp_path / "trace"
+    path.write_text(GOOD)
+    study, packed = load_study(path), io.BytesIO()
+    with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
+        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        raise KeyboardInterrupt
+    np.savez(packed, x=np.array([Payload(trace)], dtype=object))
+    data = packed.getvalue()
+    (file,) = (unfinished_folder(out) / "pieces").iterdir()
+    file.write_bytes(hashlib.sha256(data).digest() + data)
+    with unfinished_of(study, out) as disk:
+        assert disk.n_found == 0
+    assert not trace.exists()
+    with np.load(io.BytesIO(data), allow_pickle=True) as arrays:
+        arrays["x"]
+    assert trace.exists()  # it would have left one
 
 
 def test_what_a_study_only_names_is_in_its_fingerprint(tmp_path):

@@ -26,9 +26,19 @@ from trundle.response import (
 )
 from trundle.signals import Averaging, Record, doubtful_channels
 from trundle.simulate import Runs
-from trundle.study.zarr_check import check_zarr
+from trundle.study.owned import check_unchanged
+from trundle.study.zarr_check import check_whole, check_zarr
 
 __all__ = ["RecordResult", "Simulated", "assess_record", "read_simulated"]
+
+_READ = (
+    "band_velocity",
+    "case",
+    "road",
+    "method_name",
+    "point",
+    "band",
+)  # arrays of a results store
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -186,14 +196,28 @@ def read_simulated(
     if not store.is_dir():
         raise InputError(f"{folder}: is no results folder of trundle (no results.zarr in it)")
     check_zarr(store)
+    for name in _READ:
+        check_whole(store, name)
+    check_unchanged(folder, store.name)
     try:
-        data = xr.open_zarr(store, zarr_format=2)
-    except Exception as error:  # its readers raise whatever damaged metadata leads them to
-        raise InputError(f"{folder}: its results cannot be read ({type(error).__name__})") from None
-    with data:
-        if "point" not in data or "band_velocity" not in data:
-            raise InputError(f"{folder}: holds no band levels at points")
+        return _laid_beside(store, point, averaging)
+    except InputError:
+        raise
+    except Exception as error:  # readers raise whatever damage leads them to
+        raise InputError(
+            f"{folder}: its band levels are damaged ({type(error).__name__}); run the study again"
+        ) from None
+
+
+def _laid_beside(store: Path, point: str | None, averaging: Averaging) -> tuple[Simulated, ...]:
+    """Return the levels of a store at a point, one for each case and road."""
+    folder = store.parent
+    # Attributes of a stranger are not obeyed: none is a scale, a mask or a calendar.
+    with xr.open_zarr(store, zarr_format=2, consolidated=False, decode_cf=False) as data:
         points = [str(name) for name in data["point"].values]
+        names = (*points, *map(str, data["case"].values), *map(str, data["road"].values))
+        if not all(name.isprintable() for name in names):
+            raise InputError(f"{folder}: has names with control characters, which trundle refuses")
         if point is not None and point not in points:
             raise InputError(f"{folder}: no point {point!r}; there are {', '.join(points)}")
         rule = str(data["band_velocity"].attrs["long_name"]).rpartition(", ")[2]
@@ -203,7 +227,9 @@ def read_simulated(
                 f"which may be several times apart; say --averaging {rule}"
             )
         name = point or points[0]
-        levels = _decoded(data["band_velocity"].isel(method_name=-1).sel(point=name), folder)
+        levels = data["band_velocity"].isel(method_name=-1).sel(point=name).load()
+    levels = levels.transpose("case", "road", "run", "band")
+    mid_band = np.asarray(levels["band"].values, float)
     found = []
     for case in levels["case"].values:
         for road in levels["road"].values:
@@ -211,18 +237,8 @@ def read_simulated(
             found.append(
                 Simulated(
                     title=f"{case}, class {road}, {name}",
-                    mid_band=np.asarray(levels["band"].values, float),
+                    mid_band=mid_band,
                     levels=np.percentile(values, [5.0, 50.0, 95.0], axis=0),
                 )
             )
     return tuple(found)
-
-
-def _decoded(levels: xr.DataArray, folder: Path) -> xr.DataArray:
-    """Return levels in memory; damaged ones are named."""
-    try:
-        return levels.load()
-    except Exception as error:  # codecs raise whatever damage leads them to
-        raise InputError(
-            f"{folder}: its band levels are damaged ({type(error).__name__}); run the study again"
-        ) from None

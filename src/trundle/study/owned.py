@@ -8,9 +8,10 @@ from pathlib import Path
 
 from trundle.errors import InputError
 
-__all__ = ["MARK", "check_owned", "record_owned"]
+__all__ = ["MARK", "check_owned", "check_unchanged", "record_owned"]
 
 MARK = ".trundle-results"
+_UNREADABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError)
 
 
 def record_owned(folder: Path, kind: str) -> None:
@@ -47,9 +48,8 @@ def check_owned(folder: Path, kind: str) -> None:
         return
     remedy = "; choose another with --out, or move them away"
     try:
-        said = json.loads((folder / MARK).read_text("utf-8"))
-        known, own_kind = dict(said["files"]), str(said["kind"])
-    except (OSError, ValueError, KeyError, TypeError):
+        known, own_kind = _recorded(folder)
+    except _UNREADABLE:
         raise InputError(
             f"results folder {folder} holds files that trundle did not write, or no list of those "
             f"that it wrote{remedy}"
@@ -64,6 +64,49 @@ def check_owned(folder: Path, kind: str) -> None:
             f"results folder {folder} holds files that trundle did not write, or that were changed "
             f"since ({named}){remedy}"
         )
+
+
+def check_unchanged(folder: Path, below: str) -> None:
+    """Refuse results of which a file is missing, or is not what was written.
+
+    Results without a list pass, as some archives leave them: nothing tells what they were.
+
+    Parameters
+    ----------
+    folder : Path
+        A results folder.
+    below : str
+        Of its files, those in this folder inside it.
+
+    Raises
+    ------
+    InputError
+        A file that is gone, was added or changed, by its name; a list that cannot be read.
+    """
+    if not (folder / MARK).exists():
+        return
+    try:
+        known, _ = _recorded(folder)
+    except _UNREADABLE:
+        raise InputError(f"{folder / MARK}: is damaged; run the study again") from None
+    there = _files(folder / below)
+    wanted = {n.removeprefix(f"{below}/"): h for n, h in known.items() if n.startswith(f"{below}/")}
+    for name in sorted(wanted.keys() | there.keys()):
+        if name not in there:
+            raise InputError(f"{folder / below / name}: is missing; run the study again")
+        if wanted.get(name) != _hash(there[name]):
+            raise InputError(
+                f"{folder / below / name}: is not as trundle wrote it; run the study again"
+            )
+
+
+def _recorded(folder: Path) -> tuple[dict[str, str], str]:
+    """Return the files that a folder's list names, with their hashes, and their kind."""
+    mark = folder / MARK
+    if mark.is_symlink() or not mark.is_file():
+        raise ValueError("no file")
+    said = json.loads(mark.read_text("utf-8"))
+    return {str(name): str(known) for name, known in said["files"].items()}, str(said["kind"])
 
 
 def _files(folder: Path) -> dict[str, Path]:

@@ -1,5 +1,6 @@
 """A run that is killed goes on, and ends with the bytes of one that was not."""
 
+import errno
 import hashlib
 import io
 import os
@@ -288,6 +289,93 @@ def test_links_in_an_unfinished_folder_are_not_followed(tmp_path, where):
     ):
         pass
     assert victim.read_text() == "mine"
+
+
+@pytest.mark.parametrize("where", ["lock", "trundle-unfinished.json", "pieces", "pieces/a.piece"])
+def test_pipes_in_an_unfinished_folder_are_not_waited_for(tmp_path, where):
+    path = tmp_path / "study.toml"
+    path.write_text(GOOD)
+    folder = unfinished_folder(tmp_path / "out")
+    (folder / "pieces").mkdir(parents=True)
+    (folder / "trundle-unfinished.json").write_text("{}")
+    if where == "pieces":
+        (folder / "pieces").rmdir()
+    (folder / where).unlink(missing_ok=True)
+    os.mkfifo(folder / where)
+    with (
+        pytest.raises(InputError, match="a pipe"),
+        unfinished_of(load_study(path), tmp_path / "out"),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("where", ["lock", "trundle-unfinished.json"])
+def test_a_file_of_two_names_keeps_its_content(tmp_path, where):
+    """An archive can name a file twice; what the other name shows is somebody else's."""
+    path, victim = tmp_path / "study.toml", tmp_path / "thesis.tex"
+    path.write_text(GOOD)
+    victim.write_bytes(b"mine \xff")
+    folder = unfinished_folder(tmp_path / "out")
+    folder.mkdir()
+    (folder / "trundle-unfinished.json").write_text("{}")
+    (folder / where).unlink(missing_ok=True)
+    os.link(victim, folder / where)
+    with unfinished_of(load_study(path), tmp_path / "out") as disk:
+        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+    assert victim.read_bytes() == b"mine \xff"
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("fresh", [True, False])
+def test_what_a_user_puts_beside_the_pieces_is_kept(tmp_path, fresh):
+    path, out = tmp_path / "study.toml", tmp_path / "out"
+    path.write_text(GOOD)
+    study, folder = load_study(path), unfinished_folder(out)
+    with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
+        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        raise KeyboardInterrupt
+    for name in ("notes.txt", "pieces/mine.txt"):
+        (folder / name).write_text("mine")
+    with unfinished_of(study, out, fresh=fresh) as disk:
+        assert disk.n_found == (0 if fresh else 1)
+    left = sorted(str(f.relative_to(folder)) for f in folder.rglob("*") if f.is_file())
+    assert left == ["notes.txt", "pieces/mine.txt"]
+
+
+def test_a_file_in_the_place_of_the_pieces_is_named(tmp_path):
+    path, folder = tmp_path / "study.toml", unfinished_folder(tmp_path / "out")
+    path.write_text(GOOD)
+    folder.mkdir()
+    for name in ("trundle-unfinished.json", "pieces"):
+        (folder / name).write_text("mine")
+    with (
+        pytest.raises(InputError, match="pieces is no folder"),
+        unfinished_of(load_study(path), tmp_path / "out"),
+    ):
+        pass
+    assert (folder / "pieces").read_text() == "mine"
+
+
+def test_a_full_disk_is_named_and_keeps_what_was_finished(tmp_path, monkeypatch):
+    path, out = tmp_path / "study.toml", tmp_path / "out"
+    path.write_text(GOOD)
+    study, piece = load_study(path), Piece(arrays={"x": np.arange(3.0)}, notes={})
+
+    def full(number):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with (
+        pytest.raises(InputError, match=r"b\.piece cannot be written \(No space left.*are kept"),
+        unfinished_of(study, out) as disk,
+    ):
+        disk.save("a", piece)
+        monkeypatch.setattr("trundle.study.kept.os.fsync", full)
+        disk.save("b", piece)
+    monkeypatch.undo()
+    assert pieces(tmp_path) == ["a.piece"]
+    assert not list(unfinished_folder(out).rglob(".writing-*"))
+    with unfinished_of(study, out) as disk:
+        assert (disk.n_found, disk.has("a")) == (1, True)
 
 
 def test_two_runs_into_one_folder_do_not_meet(tmp_path):

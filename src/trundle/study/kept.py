@@ -69,16 +69,18 @@ def read_kept(file: Path) -> dict[str, Array] | None:
 def refuse_links(folder: Path) -> None:
     """Refuse a folder that is a link or holds one: writing would reach what it points to.
 
+    Devices and pipes are refused as well, for reading one may never end.
+
     Raises
     ------
     InputError
-        A link.
+        What is no file and no folder, by its name.
     """
-    if not folder.is_symlink() and not folder.exists():
-        return
-    links = [folder] if folder.is_symlink() else [p for p in folder.rglob("*") if p.is_symlink()]
-    if links:
-        raise InputError(
-            f"{links[0]} is a link, and trundle writes none: whatever it points to would be "
-            "written over; remove it, or choose another results folder with --out"
-        )
+    inside = sorted(folder.rglob("*")) if folder.is_dir() and not folder.is_symlink() else []
+    for path in (folder, *inside):
+        if path.is_symlink() or (path.exists() and not path.is_file() and not path.is_dir()):
+            raise InputError(
+                f"{path} is a link, a device or a pipe, and trundle writes none: whatever stands "
+                "behind it would be written over; remove it, or choose another results folder "
+                "with --out"
+            )

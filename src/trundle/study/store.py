@@ -1,16 +1,10 @@
-"""Write results aside and put them in place in one step."""
+"""Write what a study gave into a folder: arrays, tables, and where they come from."""
 
 from __future__ import annotations
 
 import json
-import os
 import platform
-import shutil
-import signal
-import tempfile
-import threading
-from collections.abc import Generator, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +13,10 @@ import xarray as xr
 
 from trundle import __version__
 from trundle._csv import write_csv
-from trundle.errors import InputError
 from trundle.response import percentile_interval
 from trundle.study.cells import Cell
 from trundle.study.datasets import plain, result_groups
-from trundle.study.owned import check_owned, record_owned
+from trundle.study.results_folder import check_target, new_results_folder, uninterrupted
 from trundle.study.run import StudyResult, positions_at
 
 __all__ = [
@@ -33,136 +26,6 @@ __all__ = [
     "uninterrupted",
     "write_results",
 ]
-
-
-def check_target(folder: Path, kind: str = "study") -> None:
-    """Refuse a results folder that cannot be written, before any work starts.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder.
-    kind : str
-        What will be written there: results of a study, of a record, or of changes.
-
-    Raises
-    ------
-    InputError
-        A file in its place, a folder that holds something else, or no permission.
-    """
-    folder = _normal(folder)
-    try:
-        _check_place(folder, kind)
-    except OSError as error:
-        raise InputError(
-            f"results folder {folder}: {error.strerror or error}; choose another with --out"
-        ) from None
-    parent = _nearest_folder(folder)
-    if not parent.is_dir():
-        raise InputError(f"results folder {folder}: {parent} is not a folder; choose another")
-    try:
-        with tempfile.TemporaryDirectory(dir=parent, prefix=".trundle-"):
-            pass
-    except OSError as error:
-        raise InputError(
-            f"results folder {folder} cannot be written ({error.strerror}); "
-            "choose another with --out"
-        ) from None
-
-
-def _check_place(folder: Path, kind: str) -> None:
-    if folder.is_symlink():
-        raise InputError(f"results folder {folder} is a link; name the folder itself with --out")
-    if folder.exists() and not folder.is_dir():
-        raise InputError(
-            f"results folder {folder}: a file has this name; choose another with --out"
-        )
-    if not folder.is_dir():
-        return
-    if folder.resolve() == Path.cwd():
-        raise InputError("the results folder must not be the current folder; name one with --out")
-    check_owned(folder, kind)
-
-
-def _normal(folder: Path) -> Path:
-    """Return an absolute path without steps back: ``o/../o`` is ``o``."""
-    return Path(os.path.normpath(folder.absolute()))
-
-
-def _nearest_folder(folder: Path) -> Path:
-    parent = folder.absolute().parent
-    while not parent.exists() and parent != parent.parent:
-        parent = parent.parent
-    return parent
-
-
-@contextmanager
-def new_results_folder(
-    folder: Path, *, within: Path | None = None, kind: str = "study"
-) -> Generator[Path]:
-    """Give a folder to fill; it takes its place only when all went well.
-
-    It is filled beside its place, or `within` a folder of the same file system. What is written is
-    recorded; of an earlier result nothing goes that is not on its own list, and of the same kind.
-
-    An earlier result of that name is replaced at the end; after an error or an interrupt it
-    still stands, and the half-filled folder is gone.
-    """
-    folder = _normal(folder)
-    made = [parent for parent in folder.parents if not parent.exists()]
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    aside = Path(tempfile.mkdtemp(dir=within or folder.parent, prefix=".trundle-"))
-    try:
-        aside.chmod(0o755)
-        yield aside
-        with uninterrupted():
-            record_owned(aside, kind)
-            _swap(aside, folder, kind)
-    finally:
-        with uninterrupted():
-            shutil.rmtree(aside, ignore_errors=True)
-            if not folder.exists():
-                for parent in made:
-                    with suppress(OSError):
-                        parent.rmdir()
-
-
-@contextmanager
-def uninterrupted() -> Generator[None]:
-    """Hold back Ctrl-C and termination until the block is done.
-
-    Writers with threads of their own would go on writing behind an interrupted main thread.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    held: list[int] = []
-    numbers = (signal.SIGINT, signal.SIGTERM)
-    old = [signal.signal(number, lambda n, _frame: held.append(n)) for number in numbers]
-    try:
-        yield
-    finally:
-        for number, handler in zip(numbers, old, strict=True):
-            signal.signal(number, handler)
-    if held:
-        raise KeyboardInterrupt
-
-
-def _swap(new: Path, place: Path, kind: str) -> None:
-    """Put new results in the place of earlier ones; if those hold more by now, beside them."""
-    if not place.exists():
-        os.rename(new, place)
-        return
-    try:
-        check_owned(place, kind)
-    except InputError as error:
-        beside = Path(tempfile.mkdtemp(dir=place.parent, prefix=f"{place.name}-"))
-        os.rename(new, beside)
-        raise InputError(f"{error}; the new results are in {beside}") from None
-    old = Path(tempfile.mkdtemp(dir=place.parent, prefix=".trundle-old-"))
-    os.rename(place, old / "old")
-    os.rename(new, place)
-    shutil.rmtree(old, ignore_errors=True)
 
 
 def provenance(result: StudyResult) -> dict[str, Any]:

@@ -20,6 +20,7 @@ import numpy as np
 
 from trundle import __version__
 from trundle.errors import ComputationError, InputError
+from trundle.study.disk import named_disk_errors, true_path
 from trundle.study.fingerprint import digest_of
 from trundle.study.kept import read_kept, refuse_links, write_kept
 from trundle.study.model import Study
@@ -74,13 +75,15 @@ class OnDisk:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._store = folder / "pieces"
+        if self._store.exists() and not self._store.is_dir():
+            raise InputError(f"{self._store} is no folder; remove {folder}, and run it again")
         self._store.mkdir(exist_ok=True)
         for aside in self._store.glob(".writing-*"):  # what a killed process was writing
             aside.unlink(missing_ok=True)
         for aside in folder.glob(".trundle-*"):
             shutil.rmtree(aside, ignore_errors=True)
         # What does not hold against its checksum is computed again.
-        self._sound = {file.stem for file in self._files() if read_kept(file) is not None}
+        self._sound = {file.stem for file in self._files() if _read(file) is not None}
 
     @property
     def n_found(self) -> int:
@@ -94,18 +97,24 @@ class OnDisk:
     def save(self, name: str, piece: Piece) -> None:
         """Write a piece aside, then rename it into place."""
         notes = np.frombuffer(json.dumps(piece.notes).encode(), dtype=np.uint8)
-        write_kept(self._file(name), {**piece.arrays, _NOTES: notes})
+        with named_disk_errors(self._file(name), "pieces finished before are kept"):
+            write_kept(self._file(name), {**piece.arrays, _NOTES: notes})
         self._sound.add(name)
 
     def load(self, name: str) -> Piece:
         """Return a piece that is there."""
-        arrays = read_kept(self._file(name))
-        if arrays is None:
+        piece = _read(self._file(name))
+        if piece is None:
             raise ComputationError(
                 f"{self._file(name)}: was altered while the run went on; run it again"
             )
-        notes = json.loads(arrays.pop(_NOTES).tobytes().decode())
-        return Piece(arrays=arrays, notes=notes)
+        return piece
+
+    def clear(self) -> None:
+        """Forget all pieces; what somebody else put beside them stays."""
+        for file in self._files():
+            file.unlink(missing_ok=True)
+        self._sound.clear()
 
     def _files(self) -> list[Path]:
         return sorted(self._store.glob("*.piece"))
@@ -114,9 +123,21 @@ class OnDisk:
         return self._store / f"{name}.piece"
 
 
+def _read(file: Path) -> Piece | None:
+    """Return the piece in a file; None if it is not what was written."""
+    arrays = read_kept(file)
+    if arrays is None or _NOTES not in arrays:
+        return None
+    try:
+        notes = json.loads(arrays.pop(_NOTES).tobytes())
+    except (ValueError, RecursionError):
+        return None
+    return Piece(arrays=arrays, notes=notes) if isinstance(notes, dict) else None
+
+
 def unfinished_folder(out: Path) -> Path:
     """Return where the pieces of a run into a results folder are kept until it is done."""
-    out = Path(os.path.normpath(out.absolute()))
+    out = true_path(out)
     return out.with_name(f"{out.name}.unfinished")
 
 
@@ -149,27 +170,41 @@ def unfinished_of(study: Study, out: Path, *, fresh: bool = False) -> Generator[
             "move it away, or choose another results folder with --out"
         )
     made = [parent for parent in folder.parents if not parent.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
+    with named_disk_errors(folder, "nothing was written"):
+        folder.mkdir(parents=True, exist_ok=True)
     with _locked(folder / "lock"):
-        fingerprint = _fingerprint(study)
-        if fresh or not mark.is_file() or mark.read_text("utf-8") != fingerprint:
-            shutil.rmtree(folder / "pieces", ignore_errors=True)
-            mark.write_text(fingerprint, "utf-8")
-        store = OnDisk(folder)
+        store = _opened(folder, _fingerprint(study), fresh=fresh)
         try:
             yield store
         except BaseException:
             if not store.n_found:
-                _remove(folder, made)
+                _remove(store, made)
             raise
-        _remove(folder, [])
+        _remove(store, [])
 
 
-def _remove(folder: Path, made: list[Path]) -> None:
-    shutil.rmtree(folder, ignore_errors=True)
-    for parent in made:
+def _opened(folder: Path, fingerprint: str, *, fresh: bool) -> OnDisk:
+    """Return the pieces of a folder, those of another study thrown away."""
+    mark = folder / _MARK
+    with named_disk_errors(folder, "nothing was written"):
+        store = OnDisk(folder)
+        if fresh or not mark.is_file() or mark.read_bytes() != fingerprint.encode():
+            store.clear()
+            aside = mark.with_suffix(".aside")
+            aside.unlink(missing_ok=True)
+            aside.write_text(fingerprint, "utf-8")
+            os.replace(aside, mark)  # never into what another name may share
+    return store
+
+
+def _remove(store: OnDisk, made: list[Path]) -> None:
+    """Remove what was written; a folder that holds anything else stays with that."""
+    store.clear()
+    for name in (_MARK, "lock"):
+        (store.folder / name).unlink(missing_ok=True)
+    for folder in (store.folder / "pieces", store.folder, *made):
         with suppress(OSError):
-            parent.rmdir()
+            folder.rmdir()
 
 
 def _fingerprint(study: Study) -> str:
@@ -194,7 +229,9 @@ def _locked(file: Path) -> Generator[None]:
     except ImportError:
         yield
         return
-    with file.open("w") as opened:
+    with named_disk_errors(file, "nothing was written"):
+        opened = file.open("a")  # nothing that is there is cut
+    with opened:
         try:
             fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError:

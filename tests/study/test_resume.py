@@ -1,7 +1,6 @@
 """A run that is killed goes on, and ends with the bytes of one that was not."""
 
 import errno
-import hashlib
 import io
 import os
 import signal
@@ -15,7 +14,7 @@ import pytest
 from test_bad_input import GOOD
 
 from trundle.cli.app import main
-from trundle.errors import InputError, UnstableStepError
+from trundle.errors import ComputationError, InputError, UnstableStepError
 from trundle.study import load_study
 from trundle.study.jobs import compute, plan_jobs
 from trundle.study.pieces import Piece
@@ -227,6 +226,54 @@ def test_a_piece_that_was_altered_is_not_believed(tmp_path, how):
         assert (disk.n_found, disk.has(first), disk.has(second)) == (1, False, True)
 
 
+def test_no_bit_and_no_end_of_a_piece_may_change(tmp_path):
+    """Every part of the file: sum, headers, numbers, notes, the archive's list."""
+    path, out = tmp_path / "study.toml", tmp_path / "out"
+    path.write_text(GOOD)
+    with unfinished_of(load_study(path), out) as disk:
+        disk.save("a", Piece(arrays={"x": np.arange(9.0)}, notes={"top": 1.5}))
+        file = unfinished_folder(out) / "pieces" / "a.piece"
+        data = file.read_bytes()
+        for spoiled in spoilt(data):
+            file.write_bytes(spoiled)
+            with pytest.raises(ComputationError, match="was altered"):
+                disk.load("a")
+        file.write_bytes(data)
+        np.testing.assert_array_equal(disk.load("a").arrays["x"], np.arange(9.0))
+
+
+def spoilt(data):
+    """Give a file with single bits flipped, its end cut off, something added, and zeros in it."""
+    for at in range(0, len(data), max(1, len(data) // 60)):
+        flipped = bytearray(data)
+        flipped[at] ^= 1 << at % 8
+        yield bytes(flipped)
+        yield data[:at]
+    yield data + b"\0"
+    yield data[:-40] + bytes(40)  # a block that never reached the disk
+    yield bytes(len(data))
+
+
+def test_a_piece_is_neither_another_s_nor_another_study_s(tmp_path):
+    path, out = tmp_path / "study.toml", tmp_path / "out"
+    path.write_text(GOOD)
+    kept = unfinished_folder(out) / "pieces"
+    with pytest.raises(KeyboardInterrupt), unfinished_of(load_study(path), out) as disk:
+        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        (kept / "b.piece").write_bytes((kept / "a.piece").read_bytes())
+        raise KeyboardInterrupt
+    with unfinished_of(load_study(path), out) as disk:
+        assert (disk.has("a"), disk.has("b")) == (True, False)
+        foreign = (kept / "a.piece").read_bytes()
+    path.write_text(GOOD.replace("seed = 1", "seed = 2"))
+    with pytest.raises(KeyboardInterrupt), unfinished_of(load_study(path), out) as disk:
+        disk.save("c", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        (kept / "a.piece").write_bytes(foreign)
+        raise KeyboardInterrupt
+    with unfinished_of(load_study(path), out) as disk:
+        assert (disk.has("a"), disk.has("c")) == (False, True)
+
+
 class Payload:
     """What leaves a trace when it is unpickled."""
 
@@ -241,14 +288,13 @@ def test_a_stranger_s_piece_is_not_unpickled(tmp_path):
     """Its checksum is right, for whoever can write a file can sum it up."""
     path, out, trace = tmp_path / "study.toml", tmp_path / "out", tmp_path / "trace"
     path.write_text(GOOD)
-    study, packed = load_study(path), io.BytesIO()
+    study = load_study(path)
     with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
-        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        payload = np.array([Payload(trace)], dtype=object)
+        disk.save("a", Piece(arrays={"x": payload}, notes={}))
         raise KeyboardInterrupt
-    np.savez(packed, x=np.array([Payload(trace)], dtype=object))
-    data = packed.getvalue()
     (file,) = (unfinished_folder(out) / "pieces").iterdir()
-    file.write_bytes(hashlib.sha256(data).digest() + data)
+    data = file.read_bytes()[32:]
     with unfinished_of(study, out) as disk:
         assert disk.n_found == 0
     assert not trace.exists()

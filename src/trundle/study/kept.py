@@ -6,7 +6,6 @@ import hashlib
 import io
 import os
 import tempfile
-import zipfile
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
@@ -22,7 +21,7 @@ __all__ = ["read_kept", "refuse_links", "write_kept"]
 _DIGEST = 32  # bytes of SHA-256 before the arrays
 
 
-def write_kept(file: Path, arrays: Mapping[str, Array]) -> None:
+def write_kept(file: Path, arrays: Mapping[str, Array], label: str) -> None:
     """Write arrays aside, have the disk hold them, and rename: whole or not at all.
 
     Parameters
@@ -31,6 +30,8 @@ def write_kept(file: Path, arrays: Mapping[str, Array]) -> None:
         Where they go; an earlier file of that name is replaced.
     arrays : mapping of str to ndarray
         Numbers; their names may hold anything but a slash.
+    label : str
+        What they are; only who asks for the same is given them.
     """
     packed = io.BytesIO()
     named: dict[str, Any] = {name: np.ascontiguousarray(v) for name, v in arrays.items()}
@@ -39,7 +40,7 @@ def write_kept(file: Path, arrays: Mapping[str, Array]) -> None:
     number, aside = tempfile.mkstemp(dir=file.parent, prefix=".writing-")
     try:
         with os.fdopen(number, "wb") as opened:
-            opened.write(hashlib.sha256(data).digest())
+            opened.write(_digest(label, data))
             opened.write(data)
             opened.flush()
             os.fsync(number)
@@ -50,20 +51,33 @@ def write_kept(file: Path, arrays: Mapping[str, Array]) -> None:
         raise
 
 
-def read_kept(file: Path) -> dict[str, Array] | None:
+def read_kept(file: Path, label: str) -> dict[str, Array] | None:
     """Return the arrays of a file; None if it is not there, or not what was written.
 
     Nothing in it is unpickled.
+
+    Parameters
+    ----------
+    file : Path
+        The file.
+    label : str
+        What its arrays must be.
     """
     try:
         with file.open("rb") as opened:
             digest, data = opened.read(_DIGEST), opened.read()
-        if hashlib.sha256(data).digest() != digest:
+        if _digest(label, data) != digest:
             return None
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
             return {name: arrays[name] for name in arrays.files}
-    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile):
+    except Exception:  # readers raise whatever a stranger's archive leads them to
         return None
+
+
+def _digest(label: str, data: bytes) -> bytes:
+    found = hashlib.sha256(label.encode() + b"\0")
+    found.update(data)
+    return found.digest()
 
 
 def refuse_links(folder: Path) -> None:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import tempfile
-import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 
-from trundle.dynamics import Modes, available_backends, natural_modes
+from trundle.dynamics import Modes, available_backends, count_modes_below, natural_modes
 from trundle.structure import Floor
 
 __all__ = ["cache_folder", "modes_of"]
@@ -71,10 +72,19 @@ def _read(file: Path, floor: Floor) -> Modes | None:
                 residuals=data["residuals"],
                 f_max=float(data["f_max"]),
             )
+            whole = data["digest"].tobytes() == _digest(modes)
         os.utime(file)
-    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile):
+    except Exception:  # readers raise whatever damage leads them to
         return None
-    return modes if _are_of(floor, modes) else None
+    return modes if whole and _are_of(floor, modes) else None
+
+
+def _digest(modes: Modes) -> bytes:
+    """Return a sum of all that is kept of modes."""
+    found = hashlib.sha256(f"{modes.f_max!r} {modes.shapes.shape}".encode())
+    for values in (modes.omega, modes.residuals, modes.shapes):
+        found.update(memoryview(np.ascontiguousarray(values)))
+    return found.digest()
 
 
 def _are_of(floor: Floor, modes: Modes) -> bool:
@@ -86,7 +96,8 @@ def _are_of(floor: Floor, modes: Modes) -> bool:
     n = len(modes.omega)
     if modes.shapes.shape != (floor.n_dofs, n) or modes.residuals.shape != (n,) or n == 0:
         return False
-    sound = np.isfinite(modes.shapes).all() and np.isfinite(modes.omega).all()
+    numbers = (modes.shapes, modes.omega, modes.residuals)
+    sound = all(np.isfinite(values).all() for values in numbers)
     rising = modes.omega[0] > 0.0 and bool(np.all(np.diff(modes.omega) >= 0.0))
     if not sound or not rising or modes.frequencies[-1] >= modes.f_max:
         return False
@@ -95,25 +106,34 @@ def _are_of(floor: Floor, modes: Modes) -> bool:
     both = modes.shapes @ signs
     moved = floor.mass @ both
     off = np.linalg.norm(held - moved, axis=0) / np.linalg.norm(moved, axis=0)
-    return bool(
-        np.all(off < _OFF) and np.all(np.abs(np.sum(both * moved, axis=0) / n - 1.0) < _OFF)
-    )
+    unlike = np.abs(np.sum(both * moved, axis=0) / n - 1.0)
+    if not (np.all(off < _OFF) and np.all(unlike < _OFF)):
+        return False
+    # Modes may be right, and one of them missing.
+    return count_modes_below(floor.mass, floor.stiffness, modes.f_max) == n
 
 
 def _write(file: Path, modes: Modes) -> None:
     """Write aside, then rename; a cache that cannot be written is no reason to stop."""
+    aside: str | None = None
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=file.parent, suffix=".part", delete=False) as aside:
+        number, aside = tempfile.mkstemp(dir=file.parent, suffix=".part")
+        with os.fdopen(number, "wb") as opened:
             np.savez(
-                aside,
+                opened,
                 omega=modes.omega,
                 shapes=modes.shapes,
                 residuals=modes.residuals,
                 f_max=modes.f_max,
+                digest=np.frombuffer(_digest(modes), dtype=np.uint8),
             )
-        os.replace(aside.name, file)
+            opened.flush()
+            os.fsync(number)
+        os.replace(aside, file)
         for old in sorted(file.parent.glob("*.npz"), key=lambda f: f.stat().st_mtime)[:-_KEPT]:
             old.unlink()
     except OSError:
-        return
+        if aside is not None:  # half of it on a full disk
+            with suppress(OSError):
+                os.unlink(aside)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from pathlib import Path
 
 from trundle.errors import InputError
@@ -24,9 +25,13 @@ def record_owned(folder: Path, kind: str) -> None:
     kind : str
         Of a study, a record or changes; one kind never replaces another.
     """
-    files = {name: _hash(path) for name, path in _files(folder).items()}
+    found = _files(folder)
+    for path in found.values():
+        _have_on_disk(path)  # pieces of a run are removed next: a power cut must not take both
+    files = {name: _hash(path) for name, path in found.items()}
     text = json.dumps({"kind": kind, "files": files}, indent=1)
     (folder / MARK).write_text(text + "\n", encoding="utf-8")
+    _have_on_disk(folder / MARK)
 
 
 def check_owned(folder: Path, kind: str) -> None:
@@ -118,6 +123,12 @@ def _files(folder: Path) -> dict[str, Path]:
     }
     found.pop(MARK, None)
     return found
+
+
+def _have_on_disk(path: Path) -> None:
+    if path.is_file() and not path.is_symlink():
+        with path.open("rb") as opened:
+            os.fsync(opened.fileno())
 
 
 def _hash(path: Path) -> str:

@@ -17,8 +17,10 @@ from pathlib import Path
 from typing import Protocol, runtime_checkable
 
 import numpy as np
+import scipy
 
 from trundle import __version__
+from trundle.dynamics import available_backends
 from trundle.errors import ComputationError, InputError
 from trundle.study.disk import named_disk_errors, true_path
 from trundle.study.fingerprint import digest_of
@@ -30,7 +32,7 @@ __all__ = ["InMemory", "OnDisk", "PieceStore", "unfinished_folder", "unfinished_
 
 _MARK = "trundle-unfinished.json"
 _NOTES = "notes as JSON"
-_FORMAT = 4  # of the pieces; another one starts anew
+_FORMAT = 5  # of the pieces; another one starts anew
 
 
 @runtime_checkable
@@ -70,10 +72,11 @@ class InMemory:
 
 
 class OnDisk:
-    """Keep pieces in a folder, each in a file that is whole or not at all."""
+    """Keep the pieces of a study in a folder, each in a file that is whole or not at all."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, fingerprint: str) -> None:
         self.folder = folder
+        self._fingerprint = fingerprint
         self._store = folder / "pieces"
         if self._store.exists() and not self._store.is_dir():
             raise InputError(f"{self._store} is no folder; remove {folder}, and run it again")
@@ -83,7 +86,7 @@ class OnDisk:
         for aside in folder.glob(".trundle-*"):
             shutil.rmtree(aside, ignore_errors=True)
         # What does not hold against its checksum is computed again.
-        self._sound = {file.stem for file in self._files() if _read(file) is not None}
+        self._sound = {file.stem for file in self._files() if self._read(file) is not None}
 
     @property
     def n_found(self) -> int:
@@ -98,12 +101,12 @@ class OnDisk:
         """Write a piece aside, then rename it into place."""
         notes = np.frombuffer(json.dumps(piece.notes).encode(), dtype=np.uint8)
         with named_disk_errors(self._file(name), "pieces finished before are kept"):
-            write_kept(self._file(name), {**piece.arrays, _NOTES: notes})
+            write_kept(self._file(name), {**piece.arrays, _NOTES: notes}, self._label(name))
         self._sound.add(name)
 
     def load(self, name: str) -> Piece:
         """Return a piece that is there."""
-        piece = _read(self._file(name))
+        piece = self._read(self._file(name))
         if piece is None:
             raise ComputationError(
                 f"{self._file(name)}: was altered while the run went on; run it again"
@@ -116,23 +119,26 @@ class OnDisk:
             file.unlink(missing_ok=True)
         self._sound.clear()
 
+    def _label(self, name: str) -> str:
+        """Return what a piece is: neither another study's nor another piece of this one."""
+        return f"{name} {self._fingerprint}"
+
+    def _read(self, file: Path) -> Piece | None:
+        """Return the piece in a file; None if it is not what was written."""
+        arrays = read_kept(file, self._label(file.stem))
+        if arrays is None or _NOTES not in arrays:
+            return None
+        try:
+            notes = json.loads(arrays.pop(_NOTES).tobytes())
+        except (ValueError, RecursionError):
+            return None
+        return Piece(arrays=arrays, notes=notes) if isinstance(notes, dict) else None
+
     def _files(self) -> list[Path]:
         return sorted(self._store.glob("*.piece"))
 
     def _file(self, name: str) -> Path:
         return self._store / f"{name}.piece"
-
-
-def _read(file: Path) -> Piece | None:
-    """Return the piece in a file; None if it is not what was written."""
-    arrays = read_kept(file)
-    if arrays is None or _NOTES not in arrays:
-        return None
-    try:
-        notes = json.loads(arrays.pop(_NOTES).tobytes())
-    except (ValueError, RecursionError):
-        return None
-    return Piece(arrays=arrays, notes=notes) if isinstance(notes, dict) else None
 
 
 def unfinished_folder(out: Path) -> Path:
@@ -187,7 +193,7 @@ def _opened(folder: Path, fingerprint: str, *, fresh: bool) -> OnDisk:
     """Return the pieces of a folder, those of another study thrown away."""
     mark = folder / _MARK
     with named_disk_errors(folder, "nothing was written"):
-        store = OnDisk(folder)
+        store = OnDisk(folder, fingerprint)
         if fresh or not mark.is_file() or mark.read_bytes() != fingerprint.encode():
             store.clear()
             aside = mark.with_suffix(".aside")
@@ -213,6 +219,8 @@ def _fingerprint(study: Study) -> str:
         "format": _FORMAT,
         "version": __version__,
         "numpy": np.__version__,
+        "scipy": scipy.__version__,
+        "solver": available_backends()[0],
         "study": hashlib.sha256(study.text.encode()).hexdigest(),
         "floor": study.floor.content_hash,
         # also of what the study's file only names: criteria, profiles, tables

@@ -20,8 +20,9 @@ from trundle.report import bound_rows, comparison_rows, write_report
 from trundle.study import load_study
 from trundle.study.cells import CellKey
 from trundle.study.owned import record_owned
+from trundle.study.results_folder import check_target, new_results_folder, uninterrupted
 from trundle.study.run import positions_at, run_study
-from trundle.study.store import check_target, new_results_folder, uninterrupted, write_results
+from trundle.study.store import write_results
 
 EXTRA = """
 [[route]]

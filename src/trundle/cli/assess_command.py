@@ -17,7 +17,7 @@ from trundle.records import RecordOptions, read_record
 from trundle.report import record_rows, write_record_report
 from trundle.signals import Averaging
 from trundle.study.assess_record import RecordResult, assess_record, read_simulated
-from trundle.study.store import check_target, new_results_folder
+from trundle.study.results_folder import check_target, new_results_folder
 from trundle.study.user_criteria import read_criteria
 from trundle.units import to_si
 

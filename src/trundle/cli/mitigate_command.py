@@ -16,7 +16,7 @@ from trundle.signals import Isolator
 from trundle.study.build import load_study
 from trundle.study.changes import Change, each_change, every_combination
 from trundle.study.mitigation import try_changes
-from trundle.study.store import check_target, new_results_folder
+from trundle.study.results_folder import check_target, new_results_folder
 from trundle.study.sweep import Sweep
 from trundle.units import KMH, to_si
 from trundle.vehicle import library_vehicle

@@ -13,9 +13,10 @@ from trundle.errors import InputError
 from trundle.report import write_report
 from trundle.study.build import load_study
 from trundle.study.doubts import study_doubts
+from trundle.study.results_folder import check_target, new_results_folder
 from trundle.study.run import run_study
 from trundle.study.scale_out import Cluster, cluster_at, local_cluster
-from trundle.study.store import check_target, new_results_folder, write_results
+from trundle.study.store import write_results
 from trundle.study.unfinished import unfinished_of
 
 __all__ = ["run"]

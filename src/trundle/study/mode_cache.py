@@ -83,7 +83,7 @@ def _digest(modes: Modes) -> bytes:
     """Return a sum of all that is kept of modes."""
     found = hashlib.sha256(f"{modes.f_max!r} {modes.shapes.shape}".encode())
     for values in (modes.omega, modes.residuals, modes.shapes):
-        found.update(memoryview(np.ascontiguousarray(values)))
+        found.update(np.ascontiguousarray(values).tobytes())
     return found.digest()
 
 

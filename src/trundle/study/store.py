@@ -16,16 +16,10 @@ from trundle._csv import write_csv
 from trundle.response import percentile_interval
 from trundle.study.cells import Cell
 from trundle.study.datasets import plain, result_groups
-from trundle.study.results_folder import check_target, new_results_folder, uninterrupted
+from trundle.study.results_folder import uninterrupted
 from trundle.study.run import StudyResult, positions_at
 
-__all__ = [
-    "check_target",
-    "new_results_folder",
-    "provenance",
-    "uninterrupted",
-    "write_results",
-]
+__all__ = ["provenance", "summary_rows", "write_results"]
 
 
 def provenance(result: StudyResult) -> dict[str, Any]:

@@ -181,46 +181,41 @@ def _by_band(
     level = np.full(len(limits), np.nan)
     known = spectra.resolved
     level[known] = np.percentile(values[:, known], percentile, axis=0)
-    outcomes = _outcomes(spectra, level, np.where(asked, limits, np.nan), usable)
-    if not usable.any():
-        return Verdict(
-            criterion=criterion,
-            point=name,
-            status="not assessed",
-            percentile=percentile,
-            unresolved=missing,
-            unexcited=unexcited,
-            reasons=reasons,
-            averaging=spectra.averaging,
-            bands=outcomes,
-        )
-    margins = limits[usable] / np.maximum(level[usable], np.finfo(float).tiny)
-    worst = int(np.flatnonzero(usable)[margins.argmin()])
-    margin = float(margins.min())
-    exceeding = float((values[:, usable] > limits[usable]).any(axis=1).mean())
-    if margin < 1.0:
-        status: Status = "fail"
-    else:
-        status = "not assessed" if reasons else "pass"
-    nearest = int(np.abs(values[:, worst] - level[worst]).argmin())
-    return Verdict(
+    shown = Verdict(
         criterion=criterion,
         point=name,
-        status=status,
+        status="not assessed",
         percentile=percentile,
         unresolved=missing,
         unexcited=unexcited,
         reasons=reasons,
         averaging=spectra.averaging,
+        bands=_outcomes(spectra, level, np.where(asked, limits, np.nan), usable),
+    )
+    if not usable.any():
+        return shown
+    margins = limits[usable] / np.maximum(level[usable], np.finfo(float).tiny)
+    worst = int(np.flatnonzero(usable)[margins.argmin()])
+    margin = float(margins.min())
+    nearest = int(np.abs(values[:, worst] - level[worst]).argmin())
+    return replace(
+        shown,
+        status=_status(margin, reasons),
         margin=margin,
         interval=_interval(values[:, worst], percentile, float(limits[worst])),
         governing_band=float(spectra.mid_band[worst]),
         value=float(level[worst]),
         limit=float(limits[worst]),
-        share_exceeding=exceeding,
+        share_exceeding=float((values[:, usable] > limits[usable]).any(axis=1).mean()),
         time=float(spectra.times[nearest, point, worst]),
-        bands=outcomes,
     )
+
+
+def _status(margin: float, reasons: tuple[str, ...]) -> Status:
+    """Return "fail" where a limit is exceeded; "pass" only if nothing speaks against it."""
+    if margin < 1.0:
+        return "fail"
+    return "not assessed" if reasons else "pass"
 
 
 def _refuse_non_finite(levels: Array, criterion: Criterion, point: str) -> None:
@@ -294,11 +289,10 @@ def _by_number(
     missing = () if top >= asked else (round(asked, 1),)
     unexcited = () if coverage.excited_to >= asked else (round(asked, 1),)
     reasons = (*_not_shown(missing), *coverage.reasons(waves=bool(unexcited)))
-    status: Status = "fail" if margin < 1.0 else ("not assessed" if reasons else "pass")
     return Verdict(
         criterion=criterion,
         point=point,
-        status=status,
+        status=_status(margin, reasons),
         percentile=percentile,
         unresolved=missing,
         unexcited=unexcited,

@@ -10,12 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
-from trundle._typing import Array
+from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import ModalRecursion, following_filters
+from trundle.simulate.prepared import PreparedFloor
 
-__all__ = ["Followers"]
+__all__ = ["Followers", "followers_of"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,3 +62,31 @@ class Followers:
 
     def _count_below(self, f: float) -> int:
         return int(np.searchsorted(self.modes.square, (2.0 * np.pi * f) ** 2))
+
+
+def followers_of(
+    prepared: PreparedFloor, reader: SparseMatrix, dofs: Int[Array, " dofs"]
+) -> Followers | None:
+    """Return the modes that are not stepped, None if all are.
+
+    Parameters
+    ----------
+    prepared : PreparedFloor
+        The floor with its steps.
+    reader : sparse matrix, shape (n_points, n_floor_dofs)
+        Where the response is read.
+    dofs : ndarray of int, shape (n_dofs,)
+        The route's dofs.
+    """
+    modes, propagator = prepared.modes, prepared.propagator
+    if modes is None or not isinstance(propagator, ModalRecursion):
+        return None
+    rest = slice(prepared.n_stepped, None)
+    if rest.start == modes.n_modes:
+        return None
+    shapes = modes.shapes[:, rest]
+    return Followers(
+        modes=propagator.part(rest),
+        points=np.asarray(reader @ shapes),
+        route_shapes=shapes[dofs],
+    )

@@ -26,7 +26,7 @@ from trundle.errors import FitnessWarning, InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
 from trundle.simulate._block_march import Steps, drive_in_blocks
 from trundle.simulate._floors import FullFloor, RigidGround
-from trundle.simulate._followers import Followers
+from trundle.simulate._followers import Followers, followers_of
 from trundle.simulate._given_road import given_road_doubts
 from trundle.simulate._march import (
     ContactLaw,
@@ -272,7 +272,7 @@ def lay_out(
     residual = None
     if floor.modes is not None and floor.residual:
         residual = point_residual(floor.flexibility, floor.modes, reader, rows.used_dofs())
-    followers = _followers(floor, reader, rows)
+    followers = followers_of(floor, reader, rows.used_dofs())
     under_wheels = _floor_under_wheels(floor, rows, timeline, reader, coupled=coupled)
     layout = Layout(
         crossings=many,
@@ -341,24 +341,6 @@ def _floor_under_wheels(
         points,
         flexibility=prepared.flexibility,
         coupled=coupled,
-    )
-
-
-def _followers(
-    prepared: PreparedFloor, reader: SparseMatrix, rows: ContactRows
-) -> Followers | None:
-    """Return the modes that are not stepped, at some points and the route's dofs."""
-    modes, propagator = prepared.modes, prepared.propagator
-    if modes is None or not isinstance(propagator, ModalRecursion):
-        return None
-    rest = slice(prepared.n_stepped, None)
-    if rest.start == modes.n_modes:
-        return None
-    shapes = modes.shapes[:, rest]
-    return Followers(
-        modes=propagator.part(rest),
-        points=np.asarray(reader @ shapes),
-        route_shapes=shapes[rows.used_dofs()],
     )
 
 

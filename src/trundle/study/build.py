@@ -4,38 +4,35 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from trundle.criteria import Criterion, find_criterion, shaped
-from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
-from trundle.errors import InputError, Problem, StudyError
+from trundle.errors import Problem, StudyError
 from trundle.road import RoughnessBand
-from trundle.route import ConstantSpeed, Hat, Hermite, Route
+from trundle.route import ConstantSpeed, Route
 from trundle.signals import Isolation
-from trundle.simulate import Coupled, Decoupled
 from trundle.structure import (
     FloorPlan,
     build_floor,
     reference_plan,
 )
 from trundle.study import schema
+from trundle.study._attempt import attempt
 from trundle.study._relations import relation_problems
 from trundle.study.build_map import MapInput, map_plan_of
+from trundle.study.build_methods import methods_of
 from trundle.study.convert import floor_plan_of, isolation_of, road_of, vehicle_of
 from trundle.study.model import (
     Assessment,
     Case,
     Drive,
-    MethodPlan,
     Note,
     Printed,
     PrintedBound,
     Study,
-    entry_of,
     road_label,
 )
 from trundle.study.read import StudyFile, read_study
@@ -47,7 +44,6 @@ __all__ = ["load_study"]
 T = TypeVar("T")
 
 _MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
-_DEFAULT_DRIVE_IN = 3.0  # m
 
 
 def load_study(path: Path | str) -> Study:
@@ -88,7 +84,8 @@ class _Builder:
         vehicles = self._vehicles()
         drives = self._drives(vehicles)
         band, follows = self._band()
-        methods = self._methods(mesh_size, band)
+        methods, mistakes = methods_of(file, mesh_size, band)
+        self.problems += mistakes
         assessment = self._assessment()
         isolations = self._isolations()
         mapped, mistakes = map_plan_of(
@@ -143,19 +140,11 @@ class _Builder:
         )
 
     def _try(self, place: str, make: Callable[[], T], remedy: str = "") -> T | None:
-        try:
-            return make()
-        except InputError as error:
-            rule, _, value = str(error).partition("; got ")
-            self.problems.append(
-                Problem(
-                    place=place,
-                    value=value or "this section",
-                    rule=rule,
-                    remedy=remedy or "correct the value",
-                )
-            )
+        made = attempt(place, make, remedy)
+        if isinstance(made, Problem):
+            self.problems.append(made)
             return None
+        return made
 
     def _plan(self) -> tuple[FloorPlan | None, float]:
         section = self.file.tables.get("floor")
@@ -219,98 +208,6 @@ class _Builder:
                     route=route, vehicle=vehicles[section.vehicle], run_in=section.run_in
                 )
         return drives
-
-    def _methods(self, mesh_size: float, band: RoughnessBand | None) -> dict[str, MethodPlan]:
-        methods: dict[str, MethodPlan] = {}
-        for i, section in self.file.lists.get("method", []):
-            place = f"method[{i + 1}]"
-            damping = self._damping(section, place)
-            integration = self._integration(section, place)
-            if isinstance(damping, ModalRatio) and section.integration == "newmark":
-                self.problems.append(_ratio_with_newmark(place))
-                continue
-            if damping is None or integration is None:
-                continue
-            kind = Coupled if section.interaction == "coupled" else Decoupled
-            contact = Hat() if section.contact == "hat" else Hermite()
-            made = kind(integration=integration, damping=damping, contact=contact)
-            if section.entry == "abrupt" and section.entry_length is not None:
-                self.problems.append(_length_of_nothing(place, section.entry_length))
-            default = _DEFAULT_DRIVE_IN if section.entry == "drive_in" else mesh_size
-            entry = entry_of(section.entry, section.entry_length or default)
-            own = None if band is None else self._own_band(section, place, band)
-            methods[section.name] = MethodPlan(
-                name=section.name, interaction=made, entry=entry, band=own
-            )
-        return methods
-
-    def _own_band(self, section: Any, place: str, band: RoughnessBand) -> RoughnessBand | None:
-        """Return the waves of a method that names its own."""
-        own = {
-            name: value
-            for name in ("n_max", "contact_patch")
-            if (value := getattr(section, name)) is not None
-        }
-        if not own:
-            return None
-        return self._try(f"{place}.{next(iter(own))}", lambda: replace(band, **own))
-
-    def _damping(self, section: Any, place: str) -> Damping | None:
-        d = section.damping
-        rayleigh = (d.rayleigh_alpha is not None, d.rayleigh_beta is not None)
-        if d.ratio is not None and not any(rayleigh):
-            return ModalRatio(ratio=d.ratio)
-        if d.ratio is None and all(rayleigh):
-            return Rayleigh(alpha=d.rayleigh_alpha, beta=d.rayleigh_beta)
-        given = [
-            n for n in ("ratio", "rayleigh_alpha", "rayleigh_beta") if getattr(d, n) is not None
-        ]
-        self.problems.append(
-            Problem(
-                place=f"{place}.damping",
-                value=", ".join(given) or "nothing",
-                rule="damping is either a ratio or both Rayleigh coefficients",
-                remedy='write { ratio = "3 %" } or { rayleigh_alpha = "0.8587 1/s", '
-                'rayleigh_beta = "0.001 s" }',
-            )
-        )
-        return None
-
-    def _integration(self, section: Any, place: str) -> Modal | Newmark | None:
-        if section.integration == "newmark":
-            if section.f_max is not None:
-                self.problems.append(
-                    Problem(
-                        place=f"{place}.f_max",
-                        value=f"{section.f_max:g} Hz",
-                        rule="direct integration has no modes to cut off",
-                        remedy='remove f_max, or set integration = "modal"',
-                    )
-                )
-                return None
-            if section.precision == "single":
-                self.problems.append(
-                    Problem(
-                        place=f"{place}.precision",
-                        value="'single'",
-                        rule="direct integration is in double precision",
-                        remedy='remove precision, or set integration = "modal"',
-                    )
-                )
-                return None
-            return Newmark(dt=section.dt)
-        if section.f_max is None:
-            self.problems.append(
-                Problem(
-                    place=f"{place}.f_max",
-                    value="nothing",
-                    rule="modal superposition needs the frequency up to which modes are kept",
-                    remedy='add f_max = "112 Hz": 1.25 times the end of the 80 Hz band',
-                )
-            )
-            return None
-        single = section.precision == "single"
-        return Modal(f_max=section.f_max, dt=section.dt, single=single)
 
     def _band(self) -> tuple[RoughnessBand | None, bool]:
         section = self.file.tables.get("roughness")
@@ -392,23 +289,3 @@ class _Builder:
                 remedy=f"there are: {', '.join(known) or 'none'}",
             )
         )
-
-
-def _length_of_nothing(place: str, length: float) -> Problem:
-    return Problem(
-        place=f"{place}.entry_length",
-        value=f"{length:g} m",
-        rule="an abrupt entry has no length",
-        remedy='remove entry_length, or set entry = "drive_in" or "ramp"',
-    )
-
-
-def _ratio_with_newmark(place: str) -> Problem:
-    return Problem(
-        place=f"{place}.damping",
-        value="a ratio",
-        rule="direct integration needs Rayleigh damping: a ratio for every mode would fill the "
-        "whole matrix",
-        remedy='write { rayleigh_alpha = "0.8587 1/s", rayleigh_beta = "0.001 s" }, which is 3 % '
-        'at 3.75 and 5.8 Hz, or integration = "modal"',
-    )

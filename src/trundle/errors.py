@@ -61,16 +61,23 @@ class Problem:
         What is asked of it.
     remedy : str
         What to do about it.
+    line : int or None
+        On which line of the file, where that is known.
     """
 
     place: str
     value: str
     rule: str
     remedy: str
+    line: int | None = None
 
     def __str__(self) -> str:
-        """Render the four parts as one readable paragraph."""
-        return f"{self.place}: got {self.value}\n    rule:   {self.rule}\n    remedy: {self.remedy}"
+        """Render the parts as one readable paragraph."""
+        at = "" if self.line is None else f"line {self.line}, "
+        return (
+            f"{at}{self.place}: got {self.value}\n    rule:   {self.rule}\n"
+            f"    remedy: {self.remedy}"
+        )
 
 
 class StudyError(InputError):

@@ -95,7 +95,7 @@ MISTAKES = [
     ("unknown vehicle kind", '"container_truck_40ft"', '"tank"', ["vehicle.truck.kind", "'tank'", "container_truck_40ft"]),
     ("misspelt vehicle kind", '"container_truck_40ft"', '"city_bus_2_axel"', ["vehicle.truck.kind", "must be one of container_truck_40ft", "planar", "did you mean 'city_bus_2_axle'"]),
     ("a vehicle of old", '"container_truck_40ft"', '"articulated_truck_5_axle"', ["vehicle.truck.kind", "no longer offered", "use 'tractor_3axle_semitrailer_6_axle_worn'"]),
-    ("vehicle without a kind", 'kind = "container_truck_40ft"', "", ["vehicle.truck.kind", "nothing", "choose one of container_truck_40ft"]),
+    ("vehicle without a kind", 'kind = "container_truck_40ft"', "", ["vehicle.truck.kind", "nothing", "must be one of container_truck_40ft"]),
     ("unknown entry", 'f_max =', 'entry = "abrubt"\nf_max =', ["method[1].entry", "did you mean 'abrupt'"]),
     ("abrupt over a length", 'f_max =', 'entry = "abrupt"\nentry_length = "2 m"\nf_max =', ["method[1].entry_length", "2 m", "has no length"]),
     ("unknown floor kind", 'kind = "plan"', 'kind = "flat"', ["floor.kind", "'flat'", "reference_unit"]),

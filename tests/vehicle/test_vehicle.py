@@ -208,7 +208,15 @@ def test_newmark_and_exact_vehicles_agree_at_a_short_step():
         ),
         (
             lambda: Axle(body=0, setback=0.0, stiffness=1.0, axle_mass=10.0),
-            "needs a tyre_stiffness",
+            "give its tyre_stiffness",
+        ),
+        (
+            lambda: Axle(body=0, setback=0.0, stiffness=1.0, tyre_stiffness=10.0),
+            "carries an axle_mass",
+        ),
+        (
+            lambda: Axle(body=0, setback=0.0, stiffness=1.0, tyre_damping=10.0),
+            "carries an axle_mass",
         ),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -25,6 +26,7 @@ from trundle.study._relations import relation_problems
 from trundle.study.build_map import MapInput, map_plan_of
 from trundle.study.build_methods import methods_of
 from trundle.study.convert import floor_plan_of, isolation_of, road_of, vehicle_of
+from trundle.study.lines import line_of, lines_of
 from trundle.study.model import (
     Assessment,
     Case,
@@ -68,7 +70,10 @@ def load_study(path: Path | str) -> Study:
     builder = _Builder(file, problems)
     study = builder.build()
     if problems or study is None:
-        raise StudyError(file.source, problems)
+        lines = lines_of(file.text)
+        placed = [replace(p, line=line_of(p.place, lines)) for p in problems]
+        placed.sort(key=lambda p: p.line or np.inf)
+        raise StudyError(file.source, placed)
     return study
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -14,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from trundle.errors import Problem, StudyError
 from trundle.study import schema
+from trundle.study.lines import parse
 from trundle.study.rules import rule_of
 from trundle.vehicle import RETIRED, VEHICLES
 
@@ -104,7 +104,7 @@ def read_study(path: Path) -> tuple[StudyFile, list[Problem]]:
 
 def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
     """Check the text of a study file section by section."""
-    data = _parse(text, source)
+    data = parse(text, source)
     problems: list[Problem] = []
     known = (*_GENERAL, *_TABLES, *_NAMED_TABLES, *_LISTS)
     problems += [_unknown_key(key, data[key], known, "") for key in data if key not in known]
@@ -185,19 +185,6 @@ def _text_of(path: Path) -> str:
     return text
 
 
-def _parse(text: str, source: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # bad TOML, numbers of thousands of digits
-        problem = Problem(
-            place="file",
-            value=str(error) or "nesting too deep",
-            rule="the file must be TOML 1.0",
-            remedy="mend the line named; text goes in quotes, tables in [brackets]",
-        )
-        raise StudyError(source, [problem]) from None
-
-
 def _section(kind: Any, data: Any, place: str, problems: list[Problem]) -> Any:
     if not isinstance(data, Mapping):
         problems.append(
@@ -213,7 +200,7 @@ def _section(kind: Any, data: Any, place: str, problems: list[Problem]) -> Any:
         return TypeAdapter(kind).validate_python(data)
     except ValidationError as error:
         errors = [cast("dict[str, Any]", e) for e in error.errors()]
-        inner = {e["loc"][:-1] for e in errors if e["loc"]}
+        inner = {e["loc"][:n] for e in errors for n in range(len(e["loc"]))}
         problems += [
             _problem(e, place, kind, data)
             for e in errors
@@ -273,7 +260,7 @@ def _problem(error: dict[str, Any], place: str, kind: Any, data: Mapping[str, An
         del location[0]  # the tag of a discriminated union; the file has no such key
     path = _path(place, location)
     if error["type"] == "extra_forbidden":
-        known = _fields(kind, data) if len(location) == 1 else ()
+        known = _fields_within(kind, data, location[:-1])
         return _unknown_key(str(location[-1]), error["input"], known, _path(place, location[:-1]))
     if error["type"] == "missing":
         remedy = "add one" if isinstance(location[-1], int) else f"add {location[-1]}"
@@ -281,7 +268,7 @@ def _problem(error: dict[str, Any], place: str, kind: Any, data: Mapping[str, An
     if error["type"] in {"union_tag_invalid", "union_tag_not_found"}:
         return Problem(
             place=_path(place, ["kind"]),
-            value=_show(data.get("kind", "nothing")),
+            value=_show(data["kind"]) if "kind" in data else "nothing",
             rule=f"must be one of {', '.join(_tag_names(kind))}",
             remedy=_kind_remedy(str(data.get("kind", "")), _tag_names(kind)),
         )
@@ -305,7 +292,8 @@ def _remedy(error: dict[str, Any]) -> str:
 def _kind_remedy(value: str, kinds: list[str]) -> str:
     if value in RETIRED and set(VEHICLES) <= set(kinds):
         return f"no longer offered: {RETIRED[value]}"
-    return _did_you_mean(value, kinds)
+    near = get_close_matches(value, kinds, n=1, cutoff=0.5)
+    return f"did you mean {near[0]!r}?" if near else f'write kind = "{kinds[0]}", say'
 
 
 def _did_you_mean(value: str, options: list[str]) -> str:
@@ -365,6 +353,25 @@ def _fields(kind: Any, data: Mapping[str, Any]) -> tuple[str, ...]:
             continue
         names += [info.alias or name for name, info in member.model_fields.items()]
     return tuple(names)
+
+
+def _fields_within(kind: Any, data: Mapping[str, Any], location: list[Any]) -> tuple[str, ...]:
+    """Return the keys known to a table within a section, by the way that leads to it."""
+    if not location:
+        return _fields(kind, data)
+    names = [str(part) for part in location if not isinstance(part, int)]
+    sections = [m for m in _members(kind) if names[0] in m.model_fields]
+    for name in names:
+        inner = (m.model_fields[name].annotation for m in sections if name in m.model_fields)
+        sections = [section for annotation in inner for section in _sections_in(annotation)]
+    return tuple(dict.fromkeys(key for section in sections for key in section.model_fields))
+
+
+def _sections_in(annotation: Any) -> list[Any]:
+    """Return the sections that a field may hold, itself or in a list."""
+    if isinstance(annotation, type) and issubclass(annotation, schema.Section):
+        return [annotation]
+    return [s for inner in getattr(annotation, "__args__", ()) for s in _sections_in(inner)]
 
 
 def _printable(value: Any) -> str:

@@ -5,9 +5,10 @@ Every section is checked by itself, so that the mistakes of all of them come at 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Literal, Self, TypeAlias
 
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from trundle.study.fields import (
     Acceleration,
@@ -37,7 +38,7 @@ from trundle.study.fields import (
     Wavenumber,
     Whole,
 )
-from trundle.vehicle import VEHICLES
+from trundle.vehicle import VEHICLES, wheel_mistake
 
 __all__ = [
     "CriteriaSection",
@@ -150,6 +151,12 @@ class AxleSection(Section):
     axle_mass: Mass = 0.0
     tyre_stiffness: Stiffness = 0.0
     tyre_damping: DampingCoefficient = 0.0
+
+    @model_validator(mode="after")
+    def _check_wheel(self) -> Self:
+        if mistake := wheel_mistake(self.axle_mass, self.tyre_stiffness, self.tyre_damping):
+            raise PydanticCustomError("rule", "{rule}", {"rule": mistake})
+        return self
 
 
 class HingeSection(Section):

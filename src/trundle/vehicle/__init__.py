@@ -17,6 +17,7 @@ from trundle.vehicle.planar import (
     LumpedMass,
     build_vehicle,
     damping_coefficient,
+    wheel_mistake,
 )
 
 __all__ = [
@@ -36,4 +37,5 @@ __all__ = [
     "quarter_car",
     "read_vehicle",
     "sprung_mass",
+    "wheel_mistake",
 ]

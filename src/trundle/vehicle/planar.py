@@ -13,7 +13,15 @@ from trundle.dynamics import LinearSystem
 from trundle.errors import InputError
 from trundle.vehicle.model import GRAVITY, Vehicle
 
-__all__ = ["Axle", "Body", "Hinge", "LumpedMass", "build_vehicle", "damping_coefficient"]
+__all__ = [
+    "Axle",
+    "Body",
+    "Hinge",
+    "LumpedMass",
+    "build_vehicle",
+    "damping_coefficient",
+    "wheel_mistake",
+]
 
 
 def damping_coefficient(ratio: float, stiffness: float, mass: float) -> float:
@@ -126,8 +134,20 @@ class Axle:
             tyre_stiffness=non_negative("tyre_stiffness", self.tyre_stiffness),
             tyre_damping=non_negative("tyre_damping", self.tyre_damping),
         )
-        if self.axle_mass > 0.0 and self.tyre_stiffness == 0.0:
-            raise InputError("an axle with a mass of its own needs a tyre_stiffness above 0")
+        if mistake := wheel_mistake(self.axle_mass, self.tyre_stiffness, self.tyre_damping):
+            raise InputError(mistake)
+
+
+def wheel_mistake(axle_mass: float, tyre_stiffness: float, tyre_damping: float) -> str:
+    """Say what is missing between an axle's own mass and its tyre; nothing if all is there."""
+    if axle_mass > 0.0 and tyre_stiffness == 0.0:
+        return "an axle with an axle_mass stands on a tyre: give its tyre_stiffness too"
+    if axle_mass == 0.0 and (tyre_stiffness > 0.0 or tyre_damping > 0.0):
+        return (
+            "a tyre carries an axle_mass: give that too, or leave tyre_stiffness and tyre_damping "
+            "out and write the stiffness of suspension and tyre in series, k kt / (k + kt)"
+        )
+    return ""
 
 
 def build_vehicle(

@@ -69,6 +69,9 @@ def run(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Begin anew: leave aside what a stopped run finished.")
     ] = False,
+    yes: options.Yes = False,
+    as_json: options.Json = False,
+    quiet: options.Quiet = False,
     fail_on: options.FailOn = None,
 ) -> None:
     """Run a study: progress bars, tables on the screen, a results folder with report.html.
@@ -78,10 +81,18 @@ def run(
     same numbers, to the last bit.
     """
     from trundle.cli import run_command
+    from trundle.cli.show import show_of
 
     place = out or Path(f"{study.stem}-results")
     unmet = run_command.run(
-        study, place, workers=workers, scheduler=scheduler, fresh=fresh, fail_on=fail_on or ()
+        study,
+        place,
+        workers=workers,
+        scheduler=scheduler,
+        fresh=fresh,
+        yes=yes,
+        show=show_of(as_json=as_json, quiet=quiet),
+        fail_on=fail_on or (),
     )
     if unmet:
         raise typer.Exit(NOT_MET)
@@ -104,6 +115,8 @@ def assess(
     simulation: options.Simulation = None,
     point: options.Point = None,
     out: options.RecordOut = None,
+    as_json: options.Json = False,
+    quiet: options.Quiet = False,
     fail_on: options.FailOn = None,
 ) -> None:
     r"""Assess measured records against the same criteria, with the same levels and figures.
@@ -113,6 +126,7 @@ def assess(
     slow or cut off in motion is assessed with a warning.
     """
     from trundle.cli import assess_command
+    from trundle.cli.show import show_of
     from trundle.records import RecordOptions
 
     said = RecordOptions(
@@ -129,6 +143,7 @@ def assess(
         simulation=simulation,
         point=point,
         out=out,
+        show=show_of(as_json=as_json, quiet=quiet),
         fail_on=fail_on or (),
     )
     if unmet:
@@ -155,6 +170,9 @@ def mitigate(
         bool, typer.Option("--combine", help="Combine the changes with each other too.")
     ] = False,
     runs: Annotated[int, typer.Option("--runs", min=1, max=10_000, help="Runs of each.")] = 60,
+    yes: options.Yes = False,
+    as_json: options.Json = False,
+    quiet: options.Quiet = False,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Results folder. \\[default: STUDY-mitigation-results]"),
@@ -167,6 +185,7 @@ def mitigate(
     met, curves of level against speed, and summary.csv.
     """
     from trundle.cli import mitigate_command
+    from trundle.cli.show import show_of
 
     mitigate_command.mitigate(
         study,
@@ -178,6 +197,8 @@ def mitigate(
         isolators=isolator,
         combine=combine,
         runs=runs,
+        yes=yes,
+        show=show_of(as_json=as_json, quiet=quiet),
         out=out or Path(f"{study.stem}-mitigation-results"),
     )
 
@@ -192,12 +213,13 @@ def check(
             "--meshes", help="Compute a few runs on half the mesh size too, and show the change."
         ),
     ] = False,
+    as_json: options.Json = False,
 ) -> None:
     """Check a study: every mistake at once with its remedy, or a summary and a plan sketch."""
     from trundle.cli import commands
 
-    commands.check(study)
-    if meshes:
+    commands.check(study, as_json=as_json)
+    if meshes and not as_json:
         from trundle.cli import meshes_command
 
         meshes_command.compare(study)
@@ -216,30 +238,32 @@ def new(
 @app.command()
 def modes(
     study: StudyPath,
+    *,
     f_max: Annotated[
         str, typer.Option("--f-max", help="Show the modes below this frequency.")
     ] = "10 Hz",
+    as_json: options.Json = False,
 ) -> None:
     """List the natural frequencies of a study's floor, their count proved by inertia."""
     from trundle.cli import commands
 
-    commands.modes(study, f_max)
+    commands.modes(study, f_max, as_json=as_json)
 
 
 @app.command()
-def criteria() -> None:
+def criteria(*, as_json: options.Json = False) -> None:
     """List the vibration criteria with their limits, range, source and confidence."""
     from trundle.cli import commands
 
-    commands.criteria()
+    commands.criteria(as_json=as_json)
 
 
 @app.command()
-def vehicles() -> None:
+def vehicles(*, as_json: options.Json = False) -> None:
     """List the ready vehicles with axle loads, frequencies and source."""
     from trundle.cli import commands
 
-    commands.vehicles()
+    commands.vehicles(as_json=as_json)
 
 
 def main() -> None:
@@ -253,16 +277,25 @@ def main() -> None:
             _say_interrupted()
         raise
     except InputError as error:
-        print(f"error: {error}", file=sys.stderr)
+        _say_error(error, f"error: {error}")
         sys.exit(BAD_INPUT)
     except ComputationError as error:
-        print(f"error: the computation failed: {error}", file=sys.stderr)
+        _say_error(error, f"error: the computation failed: {error}")
         sys.exit(FAILED)
     except KeyboardInterrupt:
         _say_interrupted()
         sys.exit(INTERRUPTED)
     except BrokenPipeError:
         sys.exit(FAILED)
+
+
+def _say_error(error: Exception, words: str) -> None:
+    """Print an error in words, and as JSON where that was asked for."""
+    if "--json" in sys.argv[1:]:
+        from trundle.cli.show import error_as_json
+
+        print(error_as_json(error))
+    print(words, file=sys.stderr)
 
 
 def _say_interrupted() -> None:

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 
 from trundle._checks import one_of
 from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.screen import print_table
+from trundle.cli.show import Show, say_json, warn
 from trundle.criteria import VC, Criterion, Shape, find_criterion, shaped
 from trundle.errors import InputError
 from trundle.records import RecordOptions, read_record
@@ -36,6 +38,7 @@ def assess(
     simulation: Path | None,
     point: str | None,
     out: Path | None,
+    show: Show = "tables",
     fail_on: Sequence[str] = (),
 ) -> bool:
     """Assess records one by one; write a results folder for each.
@@ -62,16 +65,25 @@ def assess(
         () if simulation is None else read_simulated(simulation, point=point, averaging=rule)
     )
     records = [read_record(file, options) for file in files]
-    unmet = False
+    unmet, said = False, list[dict[str, Any]]()
     for record, place in zip(records, places, strict=True):
         result = assess_record(
             record, curves, averaging=rule, high_pass=limit, events=events, simulated=simulated
         )
         with new_results_folder(place, kind="record") as folder:
             write_record_report(result, folder)
-        _print(result)
-        print(f"\nreport: {place.resolve() / 'report.html'}")
-        unmet |= say_unmet(fail_on, ((f"{record.source}, ", v) for v in result.verdicts))
+        report = place.resolve() / "report.html"
+        if show == "tables":
+            _print(result)
+            print(f"\nreport: {report}")
+        else:
+            for warning in result.warnings:
+                warn(warning, show)
+        said.append(json.loads((place / "summary.json").read_text("utf-8")))
+        said[-1]["report"] = str(report)
+        unmet |= say_unmet(fail_on, show, ((f"{record.source}, ", v) for v in result.verdicts))
+    if show == "json":
+        say_json(said)
     return unmet
 
 

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
+from trundle.cli.afford import what_is_dear
 from trundle.cli.screen import print_table, progress_bar
+from trundle.cli.show import say_json
 from trundle.cli.sketch import plan_sketch
 from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
 from trundle.dynamics import natural_modes
@@ -13,17 +16,22 @@ from trundle.errors import InputError
 from trundle.study.assumptions import early_end_warnings
 from trundle.study.build import load_study
 from trundle.study.doubts import study_doubts
+from trundle.study.estimate import estimate_of
+from trundle.study.model import Study
 from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
-from trundle.vehicle import GRAVITY, VEHICLES
+from trundle.vehicle import GRAVITY, VEHICLES, Vehicle
 
 _HIGHEST = 2e3  # Hz
 
 __all__ = ["check", "criteria", "modes", "new", "vehicles"]
 
 
-def check(path: Path) -> None:
+def check(path: Path, *, as_json: bool = False) -> None:
     """Check a study and print what it would do."""
     study = load_study(path)
+    if as_json:
+        say_json(_checked(study))
+        return
     cells = len(study.cases) * len(study.roads) * len(study.methods)
     print(f"{path}: no mistakes")
     for warning in study_doubts(study):
@@ -35,12 +43,38 @@ def check(path: Path) -> None:
         f"{study.floor.moving_mass() / 1e3:.0f} t moving vertically"
     )
     print(f"work:  {cells} cells of {study.runs} runs, records of up to {study.longest_record:g} s")
+    estimate = estimate_of(study)
+    print(f"takes: {estimate}")
+    if dear := what_is_dear(estimate):
+        print(f"warning: {dear}; 'trundle run' asks for --yes")
     for method in study.methods:
         print(f"method {method.name!r}: {method.interaction}; entry: {method.entry}")
     for case in study.cases:
         for warning in early_end_warnings(study, case):
             print(f"warning: {warning}")
     print(plan_sketch(study))
+
+
+def _checked(study: Study) -> dict[str, Any]:
+    """Return what `check` finds, for programs."""
+    early = [w for case in study.cases for w in early_end_warnings(study, case)]
+    estimate = estimate_of(study)
+    return {
+        "title": study.title,
+        "source": study.source,
+        "mistakes": [],
+        "warnings": [str(warning) for warning in (*study_doubts(study), *early)],
+        "nodes": len(study.floor.nodes),
+        "degrees_of_freedom": study.floor.n_dofs,
+        "moving_mass_kg": study.floor.moving_mass(),
+        "cells": len(study.cases) * len(study.roads) * len(study.methods),
+        "runs": study.runs,
+        "longest_record_s": study.longest_record,
+        "methods": {method.name: str(method.interaction) for method in study.methods},
+        "estimated_time_s": estimate.seconds,
+        "estimated_memory_bytes": estimate.memory,
+        "too_much": what_is_dear(estimate),
+    }
 
 
 def new(path: Path) -> None:
@@ -57,7 +91,7 @@ def new(path: Path) -> None:
     print(f"{path}: written; next: trundle check {path}")
 
 
-def modes(path: Path, f_max: str) -> None:
+def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
     """Print the natural frequencies of a study's floor."""
     limit = _frequency(f_max)
     floor = load_study(path).floor
@@ -69,6 +103,12 @@ def modes(path: Path, f_max: str) -> None:
             progress=lambda share: tell(f"modes below {limit:g} Hz", share),
         )
     participation = found.shapes.T @ (floor.mass @ floor.rigid_vector(2))
+    if as_json:
+        columns = (found.frequencies, participation**2, found.residuals)
+        names = ("frequency_hz", "vertical_effective_mass_kg", "residual")
+        rows = zip(*columns, strict=True)
+        say_json([dict(zip(names, map(float, row), strict=True)) for row in rows])
+        return
     print_table(
         f"{floor.name}: {found.n_modes} modes below {limit:g} Hz",
         ("mode", "f [Hz]", "vertical effective mass [t]", "residual"),
@@ -80,8 +120,25 @@ def modes(path: Path, f_max: str) -> None:
     print("The count agrees with Sylvester's law of inertia: none is missing.")
 
 
-def criteria() -> None:
+def criteria(*, as_json: bool = False) -> None:
     """Print the criteria that ship with trundle."""
+    if as_json:
+        say_json(
+            [
+                {
+                    "name": c.name,
+                    "aliases": list(c.aliases),
+                    "quantity": c.quantity,
+                    "axis": c.axis,
+                    "frequencies_hz": c.frequencies.tolist(),
+                    "limits_si": c.limits.tolist(),
+                    "source": c.source,
+                    "confidence": c.confidence,
+                }
+                for c in all_criteria()
+            ]
+        )
+        return
     print_table(
         "Vibration criteria",
         ("name", "also", "limits", "quantity", "axis"),
@@ -101,8 +158,11 @@ def criteria() -> None:
         print(f"source: {source}\n        confidence: {confidence}")
 
 
-def vehicles() -> None:
+def vehicles(*, as_json: bool = False) -> None:
     """Print the ready vehicles."""
+    if as_json:
+        say_json([_described(name, build()) for name, build in VEHICLES.items()])
+        return
     for name, build in VEHICLES.items():
         vehicle = build()
         print_table(
@@ -122,6 +182,21 @@ def vehicles() -> None:
         frequencies = ", ".join(f"{f:.2f}" for f in vehicle.natural_frequencies())
         print(f"natural frequencies on rigid ground: {frequencies} Hz")
         print(f"source: {vehicle.source}\n")
+
+
+def _described(name: str, vehicle: Vehicle) -> dict[str, Any]:
+    """Return what `vehicles` lists of one, for programs."""
+    return {
+        "name": name,
+        "mass_kg": vehicle.total_mass,
+        "contacts": list(vehicle.contact_names),
+        "setback_m": vehicle.setback.tolist(),
+        "static_loads_n": vehicle.static_forces.tolist(),
+        "contact_stiffness_n_m": vehicle.contact_stiffness.tolist(),
+        "contact_damping_n_s_m": vehicle.contact_damping.tolist(),
+        "natural_frequencies_hz": [float(f) for f in vehicle.natural_frequencies()],
+        "source": vehicle.source,
+    }
 
 
 _SHOWN: dict[str, tuple[str, float]] = {

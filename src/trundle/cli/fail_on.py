@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Sequence
 
+from trundle.cli.show import Show
 from trundle.criteria import Criterion, Verdict
 from trundle.errors import InputError
 
@@ -21,13 +23,15 @@ def check_fail_on(wanted: Sequence[str], criteria: Iterable[Criterion]) -> None:
         )
 
 
-def say_unmet(wanted: Sequence[str], verdicts: Iterable[tuple[str, Verdict]]) -> bool:
+def say_unmet(wanted: Sequence[str], show: Show, verdicts: Iterable[tuple[str, Verdict]]) -> bool:
     """Print where a criterion asked for is not passed; return whether it is anywhere.
 
     Parameters
     ----------
     wanted : sequence of str
         Names of criteria.
+    show : {"tables", "json", "nothing"}
+        Beside JSON and silence it is said on the error stream.
     verdicts : iterable of (str, Verdict)
         What drove where, and the verdict; what is not assessed is not passed.
     """
@@ -38,5 +42,5 @@ def say_unmet(wanted: Sequence[str], verdicts: Iterable[tuple[str, Verdict]]) ->
         if verdict.criterion.name.casefold() in names and verdict.status != "pass"
     ]
     for line in unmet:
-        print(f"not met: {line}")
+        print(f"not met: {line}", file=sys.stdout if show == "tables" else sys.stderr)
     return bool(unmet)

@@ -8,14 +8,17 @@ from pathlib import Path
 from typing import TypeVar
 
 from trundle._checks import one_of
+from trundle.cli.afford import check_affordable
 from trundle.cli.screen import print_table, progress_bar
+from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
 from trundle.report import PARTLY, UNKNOWN, mitigation_rows, write_mitigation_report
 from trundle.road import CLASS_NAMES
 from trundle.signals import Isolator
 from trundle.study.build import load_study
 from trundle.study.changes import Change, each_change, every_combination
-from trundle.study.mitigation import try_changes
+from trundle.study.estimate import estimate_of_changes
+from trundle.study.mitigation import check_speeds, try_changes
 from trundle.study.results_folder import check_target, new_results_folder
 from trundle.study.sweep import Sweep
 from trundle.units import KMH, to_si
@@ -37,7 +40,9 @@ def mitigate(
     isolators: str,
     combine: bool,
     runs: int,
+    yes: bool,
     out: Path,
+    show: Show = "tables",
 ) -> None:
     """Run every combination, print matrices and write a results folder."""
     study = load_study(path)
@@ -51,15 +56,27 @@ def mitigate(
         raise InputError(f"--roads {roads!r}: give road classes, such as 'A, B'")
     levers = _levers(vehicles, slabs, dampings, isolators)
     changes = every_combination(levers) if combine else each_change(levers)
-    with progress_bar() as tell, new_results_folder(out, kind="comparison") as folder:
+    check_speeds(study, at)
+    check_affordable(str(path), estimate_of_changes(study, changes, at, runs), yes=yes)
+    with (
+        progress_bar(quiet=show == "nothing") as tell,
+        new_results_folder(out, kind="comparison") as folder,
+    ):
         sweep = try_changes(
             study, changes=changes, speeds=at, roads=classes, runs=runs, report=tell
         )
         write_mitigation_report(sweep, folder)
-    _print(sweep)
+    report = out.resolve() / "report.html"
+    if show == "tables":
+        _print(sweep)
     for warning in sweep.warnings():
-        print(f"warning: {warning}")
-    print(f"\nreport: {out.resolve() / 'report.html'}")
+        warn(warning, show)
+    if show == "tables":
+        print(f"\nreport: {report}")
+    elif show == "json":
+        warnings = [str(warning) for warning in sweep.warnings()]
+        rows = mitigation_rows(sweep)
+        say_json({"outcomes": rows, "warnings": warnings, "report": str(report)})
 
 
 def _levers(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[list[Change]]:

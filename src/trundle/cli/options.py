@@ -14,7 +14,9 @@ __all__ = [
     "FailOn",
     "FullScale",
     "HighPass",
+    "Json",
     "Point",
+    "Quiet",
     "Rate",
     "RecordOut",
     "Records",
@@ -22,6 +24,7 @@ __all__ = [
     "Shape",
     "Simulation",
     "Unit",
+    "Yes",
 ]
 
 Records = Annotated[
@@ -46,6 +49,14 @@ FailOn = Annotated[
         metavar="CRITERION",
         help="End with exit code 3 where it is failed or not assessed; may be given several times.",
     ),
+]
+Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables; mistakes too.")]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Print nothing but warnings and errors.")
+]
+Yes = Annotated[
+    bool,
+    typer.Option("--yes", "-y", help="Compute it even if it takes hours, or all the memory."),
 ]
 Channel = Annotated[
     str,

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from trundle.cli.afford import check_affordable
 from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.result_tables import print_result
 from trundle.cli.screen import progress_bar
+from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
 from trundle.report import write_report
 from trundle.study.build import load_study
 from trundle.study.doubts import study_doubts
+from trundle.study.estimate import estimate_of
 from trundle.study.results_folder import check_target, new_results_folder
 from trundle.study.run import run_study
 from trundle.study.scale_out import Cluster, cluster_at, local_cluster
@@ -42,6 +46,8 @@ def run(
     workers: int | None,
     scheduler: str | None,
     fresh: bool,
+    yes: bool = False,
+    show: Show = "tables",
     fail_on: Sequence[str] = (),
 ) -> bool:
     """Run a study and write its results folder; return whether a criterion asked for is unmet."""
@@ -51,12 +57,13 @@ def run(
     check_fail_on(fail_on, () if study.assessment is None else study.assessment.criteria)
     check_target(out)
     for warning in study_doubts(study):
-        print(f"warning: {warning}")
+        warn(warning, show)
+    check_affordable(str(path), estimate_of(study), yes=yes)
     place = out.resolve()
     with (
         unfinished_of(study, out, fresh=fresh) as store,
         _cluster(workers, scheduler) as cluster,
-        progress_bar() as tell,
+        progress_bar(quiet=show == "nothing") as tell,
         new_results_folder(out, within=store.folder) as folder,
     ):
         if store.n_found:
@@ -70,10 +77,15 @@ def run(
         tell("writing results", 0.94)
         write_results(result, folder)
         write_report(result, folder, tell=lambda what, share: tell(what, 0.95 + 0.05 * share))
-    print_result(result)
-    print(f"\nreport: {place / 'report.html'}")
+    report = place / "report.html"
+    if show == "tables":
+        print_result(result)
+        print(f"\nreport: {report}")
+    elif show == "json":
+        say_json(json.loads((place / "summary.json").read_text("utf-8")) | {"report": str(report)})
     return say_unmet(
         fail_on,
+        show,
         (
             (f"{key.case}, class {key.road}, ", verdict)
             for key, verdicts in result.verdicts.items()

@@ -45,8 +45,11 @@ def print_table(
 
 
 @contextmanager
-def progress_bar() -> Generator[Tell]:
-    """Show a bar on a terminal, and one line a stage elsewhere."""
+def progress_bar(*, quiet: bool = False) -> Generator[Tell]:
+    """Show a bar on a terminal, and one line a stage elsewhere; nothing if quiet."""
+    if quiet:
+        yield lambda _what, _share: None
+        return
     if not sys.stderr.isatty():
         yield _line_teller()
         return

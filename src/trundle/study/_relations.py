@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from trundle.criteria import find_criterion
 from trundle.dynamics import Modal
 from trundle.errors import InputError, Problem
-from trundle.road import RoughnessBand
+from trundle.road import RoadClass, RoughnessBand
+from trundle.simulate import Crossing
 from trundle.simulate.ensemble import LEAST_BATCH
 from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import FloorPlan
@@ -235,15 +236,17 @@ def _sizes(
         )
     ways = (d.route.law.time_to(d.route.length + 2.0 * d.vehicle.length) for d in drives.values())
     duration = file.general.duration or max(ways, default=0.0) + 5.0
+    before = max(map(_run_in_time, drives.values()), default=0.0)
     for method in methods.values():
-        steps = duration / method.interaction.integration.dt
+        steps = (before + duration) / method.interaction.integration.dt
         if steps > _MAX_STEPS:
             yield Problem(
                 place="duration",
                 value=f"{duration:g} s",
-                rule=f"method {method.name!r} would take {steps:.3g} steps; "
+                rule=f"method {method.name!r} would take {steps:.3g} steps, those of the "
+                f"{before:.3g} s of run-in included; "
                 f"the limit is {_MAX_STEPS}",
-                remedy="shorten the duration, or lengthen dt",
+                remedy="shorten the duration or run_in, or lengthen dt",
             )
         elif steps * per_step > _MAX_HISTORY:
             yield Problem(
@@ -253,6 +256,12 @@ def _sizes(
                 f"{LEAST_BATCH} runs at a time",
                 remedy="use fewer points, a shorter record, or a longer dt",
             )
+
+
+def _run_in_time(drive: Drive) -> float:
+    """Return how long a vehicle drives on rigid ground before the record begins [s]."""
+    anywhere = RoadClass("A")
+    return Crossing(drive.vehicle, drive.route, anywhere, run_in=drive.run_in).run_in_time
 
 
 def _vehicle_steps(

@@ -110,21 +110,6 @@ class Job:
         """Whether the floor is stepped in its modes."""
         return isinstance(self.method.interaction.integration, Modal)
 
-    def costs(self, floor_size: int) -> tuple[float, ...]:
-        """Return figures proportional to the time that each part takes."""
-        integration = self.method.interaction.integration
-        modal = isinstance(integration, Modal)
-        size = 0.02 * integration.f_max**1.5 if modal else 0.1 * floor_size
-        contacts = sum(crossing.vehicle.n_contacts for crossing in self.crossings)
-        step = (2.0 + contacts) * size * self.duration / integration.dt
-        waves = 2 * self.n_waves * len(self.crossings)
-        columns = [len(part) for part in self.parts] + ([waves] if waves else [])
-        found = [step * (100 + n) for n in columns]
-        if self.map is not None:
-            answers = len(self.map.places) * (60 + self.map.runs * len(self.factors))
-            found.append(0.15 * len(self.crossings) * answers * self.duration / integration.dt)
-        return tuple(found)
-
 
 def plan_jobs(study: Study) -> tuple[Job, ...]:
     """Return the jobs of a study, in the order of its methods and cases."""

@@ -35,7 +35,7 @@ from trundle.study.model import Assessment, Case, MethodPlan, Study
 from trundle.study.sweep import Outcome, Sweep
 from trundle.vehicle import Vehicle
 
-__all__ = ["resonance_speeds", "try_changes"]
+__all__ = ["check_speeds", "resonance_speeds", "sharing_runs", "try_changes"]
 
 _LEAST_STEPS, _MOST_STEPS = 20, 100_000  # of a crossing
 _ORDERS = (1, 2, 3)  # multiples of the axle passing frequency that are marked
@@ -73,9 +73,9 @@ def try_changes(
     for label, times in Counter(change.label for change in changes).items():
         if times > 1:
             raise InputError(f"{times} changes are called {label!r}; give each a name of its own")
-    _check_speeds(study, speeds)
+    check_speeds(study, speeds)
     tell = report or (lambda _what, _share: None)
-    alike = _sharing_runs(changes)
+    alike = sharing_runs(changes)
     total, done = len(alike) * len(speeds) * len(study.cases), 0
     found: dict[tuple[str, float, str], list[Outcome]] = {}
     resonances: dict[tuple[str, str], tuple[float, ...]] = {}
@@ -111,7 +111,8 @@ def try_changes(
     )
 
 
-def _check_speeds(study: Study, speeds: Sequence[float]) -> None:
+def check_speeds(study: Study, speeds: Sequence[float]) -> None:
+    """Refuse speeds at which a crossing takes next to no steps, or endlessly many [m/s]."""
     dt = min(method.interaction.integration.dt for method in study.methods)
     longest = max(drive.route.length + drive.vehicle.length for drive in study.drives.values())
     for speed in speeds:
@@ -123,7 +124,7 @@ def _check_speeds(study: Study, speeds: Sequence[float]) -> None:
             )
 
 
-def _sharing_runs(changes: Sequence[Change]) -> list[list[Change]]:
+def sharing_runs(changes: Sequence[Change]) -> list[list[Change]]:
     """Return changes that differ by their isolators alone together, those of one slab in a row."""
     groups: dict[tuple[float, float, int], list[Change]] = {}
     for change in changes:

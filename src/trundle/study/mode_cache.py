@@ -14,7 +14,7 @@ import numpy as np
 from trundle.dynamics import Modes, available_backends, count_modes_below, natural_modes
 from trundle.structure import Floor
 
-__all__ = ["cache_folder", "modes_of"]
+__all__ = ["cache_folder", "has_modes", "modes_of"]
 
 Progress = Callable[[float], None]
 
@@ -48,11 +48,7 @@ def modes_of(floor: Floor, *, f_max: float, progress: Progress | None = None) ->
     progress : callable, optional
         Told the share of modes found, where they must be found.
     """
-    folder = cache_folder()
-    # Modes found up to another frequency, or by another solver, differ in their last digits: what
-    # other studies left must not change this one's.
-    name = f"{floor.content_hash}-{f_max:.9g}-{available_backends()[0]}.npz"
-    file = None if folder is None else folder / name
+    file = _file(floor, f_max)
     kept = None if file is None else _read(file, floor)
     if kept is not None and kept.f_max == f_max:
         return kept
@@ -60,6 +56,23 @@ def modes_of(floor: Floor, *, f_max: float, progress: Progress | None = None) ->
     if file is not None:
         _write(file, modes)
     return modes
+
+
+def has_modes(floor: Floor, f_max: float) -> bool:
+    """Return whether modes are kept; whether they can be believed is seen when they are read."""
+    file = _file(floor, f_max)
+    return file is not None and file.is_file()
+
+
+def _file(floor: Floor, f_max: float) -> Path | None:
+    """Return where modes are kept, None where keeping is switched off.
+
+    Modes found up to another frequency, or by another solver, differ in their last digits: what
+    other studies left must not change this one's.
+    """
+    folder = cache_folder()
+    name = f"{floor.content_hash}-{f_max:.9g}-{available_backends()[0]}.npz"
+    return None if folder is None else folder / name
 
 
 def _read(file: Path, floor: Floor) -> Modes | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import TypeAlias
 
 from trundle.study.jobs import Job
@@ -17,12 +17,10 @@ Report: TypeAlias = Callable[[str, float], None]
 class Bar:
     """Tell the share of a study that is done, by what each part costs; from any thread."""
 
-    def __init__(self, tell: Report, base: float, jobs: tuple[Job, ...], n_dofs: int) -> None:
+    def __init__(self, tell: Report, base: float, costs: Mapping[str, float]) -> None:
         self._tell, self._base = tell, base
-        self._costs: dict[str, float] = {}
+        self._costs = dict(costs)
         self._label = ""
-        for job in jobs:
-            self._costs |= dict(zip(job.pieces, job.costs(n_dofs), strict=True))
         self._shares = dict.fromkeys(self._costs, 0.0)
         self._lock = threading.Lock()
 

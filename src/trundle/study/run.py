@@ -16,6 +16,7 @@ from trundle.structure import Floor
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
 from trundle.study.cells import Cell, CellKey
 from trundle.study.doubts import study_doubts
+from trundle.study.estimate import shares_of
 from trundle.study.in_threads import compute_here
 from trundle.study.jobs import Job, lay_out_job, plan_jobs
 from trundle.study.maps import MapKey, StudyMap, map_of
@@ -27,8 +28,6 @@ from trundle.study.scale_out import Cluster
 from trundle.study.unfinished import InMemory, PieceStore
 
 __all__ = ["StudyResult", "positions_at", "run_study", "wheels_at"]
-
-_MODES_SHARE = 0.45  # of a study's time, as a first guess for the bar
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -125,9 +124,9 @@ def run_study(
     tell = report or (lambda _what, _share: None)
     store = store if store is not None else InMemory()
     jobs = plan_jobs(study)
-    modes = _all_modes(study, tell)
-    base = _MODES_SHARE if modes is not None else 0.0
-    bar = Bar(tell, base, jobs, study.floor.n_dofs)
+    share, costs = shares_of(study, jobs)
+    modes = _all_modes(study, lambda what, done: tell(what, share * done))
+    bar = Bar(tell, share, costs)
     floors = _Floors(study.floor, modes, jobs)
     missing = {job: [i for i, name in enumerate(job.pieces) if not store.has(name)] for job in jobs}
     bar.finished(
@@ -253,9 +252,7 @@ def _all_modes(study: Study, tell: Report) -> Modes | None:
     label = f"modes of the floor below {f_max:g} Hz"
     tell(label, 0.0)
     with repeatable():
-        return modes_of(
-            study.floor, f_max=f_max, progress=lambda share: tell(label, _MODES_SHARE * share)
-        )
+        return modes_of(study.floor, f_max=f_max, progress=lambda share: tell(label, share))
 
 
 def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:

@@ -11,19 +11,21 @@ import numpy as np
 
 from trundle._checks import one_of
 from trundle.cli.fail_on import check_fail_on, say_unmet
-from trundle.cli.screen import print_table
+from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.criteria import VC, Criterion, Shape, find_criterion, shaped
 from trundle.errors import InputError
 from trundle.records import RecordOptions, read_record
 from trundle.report import record_rows, write_record_report
-from trundle.signals import Averaging
+from trundle.signals import Averaging, Record
 from trundle.study.assess_record import RecordResult, assess_record, read_simulated
 from trundle.study.results_folder import check_target, new_results_folder
 from trundle.study.user_criteria import read_criteria
 from trundle.units import to_si
 
 __all__ = ["assess"]
+
+_LARGE = 10e6  # bytes: less is assessed in a moment
 
 
 def assess(
@@ -64,27 +66,40 @@ def assess(
     simulated = (
         () if simulation is None else read_simulated(simulation, point=point, averaging=rule)
     )
-    records = [read_record(file, options) for file in files]
+    quick = sum(file.stat().st_size for file in files if file.is_file()) < _LARGE
+    records = list[Record]()
+    with progress_bar(quiet=quick or show == "nothing") as tell:
+        for i, file in enumerate(files):
+            tell(f"reading {file}", i / len(files))
+            records.append(read_record(file, options))
     unmet, said = False, list[dict[str, Any]]()
     for record, place in zip(records, places, strict=True):
-        result = assess_record(
-            record, curves, averaging=rule, high_pass=limit, events=events, simulated=simulated
-        )
-        with new_results_folder(place, kind="record") as folder:
-            write_record_report(result, folder)
-        report = place.resolve() / "report.html"
-        if show == "tables":
-            _print(result)
-            print(f"\nreport: {report}")
-        else:
-            for warning in result.warnings:
-                warn(warning, show)
-        said.append(json.loads((place / "summary.json").read_text("utf-8")))
-        said[-1]["report"] = str(report)
+        with progress_bar(quiet=quick or show == "nothing") as tell:
+            tell(f"levels of {record.source}", 0.0)
+            result = assess_record(
+                record, curves, averaging=rule, high_pass=limit, events=events, simulated=simulated
+            )
+            tell(f"figures of {record.source}", 0.8)
+            with new_results_folder(place, kind="record") as folder:
+                write_record_report(result, folder)
+        said.append(_said(result, place, show))
         unmet |= say_unmet(fail_on, show, ((f"{record.source}, ", v) for v in result.verdicts))
     if show == "json":
         say_json(said)
     return unmet
+
+
+def _said(result: RecordResult, place: Path, show: Show) -> dict[str, Any]:
+    """Say what came out, and return it for programs."""
+    report = place.resolve() / "report.html"
+    if show == "tables":
+        _print(result)
+        print(f"\nreport: {report}")
+    else:
+        for warning in result.warnings:
+            warn(warning, show)
+    summary: dict[str, Any] = json.loads((place / "summary.json").read_text("utf-8"))
+    return summary | {"report": str(report)}
 
 
 def _curves(text: str) -> tuple[Criterion, ...]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from jaxtyping import Float
-from scipy import fft
-from scipy.interpolate import make_lsq_spline
+from scipy import fft, sparse
+from scipy.interpolate import BSpline
+from scipy.sparse.linalg import splu
 
 from trundle._checks import within
-from trundle._typing import Array
+from trundle._typing import Array, SparseMatrix
 from trundle.signals.beyond import carried_on
 from trundle.signals.record import Record
 
@@ -17,6 +18,7 @@ __all__ = ["motion_of", "wide_motion_of"]
 _ORDER = 4  # of the high-pass filter
 _PERIODS = 8.0  # of the high-pass frequency, of rest behind the record
 _KNOTS = 2.5  # periods of the high-pass frequency between knots of the line that is taken off
+_PART = 2**18  # samples looked at together
 _BEYOND = 4.0  # s that a record is carried on at either end: so long takes the lowest band's filter
 
 
@@ -97,5 +99,16 @@ def _without_line(record: Record, high_pass: float) -> Array:
     inner = np.arange(1, int(record.duration * high_pass / _KNOTS)) * _KNOTS / high_pass
     inner = inner[inner < t[-1] - 0.5 * _KNOTS / high_pass]
     knots = np.concatenate([[t[0]] * 4, inner, [t[-1]] * 4])
-    line = make_lsq_spline(t, record.samples.T, knots, k=3)(t)
-    return record.samples - np.asarray(line).T
+    # Normal equations, some samples at a time: knots are far apart, so they are as good as QR.
+    m = len(knots) - 4
+    gram, load = sparse.csr_array((m, m)), np.zeros((m, len(record.samples)))
+    centred = record.samples - record.samples.mean(axis=1, keepdims=True)
+    parts = [slice(at, at + _PART) for at in range(0, n, _PART)]
+    for part in parts:
+        basis: SparseMatrix = BSpline.design_matrix(t[part], knots, 3)
+        gram = gram + basis.T @ basis
+        load = load + basis.T @ centred[:, part].T
+    line = BSpline(knots, splu(sparse.csc_array(gram)).solve(load), 3)
+    for part in parts:
+        centred[:, part] -= line(t[part]).T
+    return centred

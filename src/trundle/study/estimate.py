@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from trundle.dynamics import Modal
+from trundle.simulate.ensemble import runs_at_once
 from trundle.structure import FloorPlan
 from trundle.study.changes import Change
 from trundle.study.jobs import Job, plan_jobs
@@ -31,6 +32,7 @@ __all__ = [
 ]
 
 _MODES = 8e-7  # s for each degree of freedom and mode
+_PASS = 7e-5  # s for each step of a batch, however few its runs
 _LAY_OUT = 5e-5  # s for each degree of freedom, for each job
 _DIRECT = 1e-8  # s for each run, step and degree of freedom to the power 1.2
 _FIGURES = 0.6  # s for each cell's figures and tables
@@ -147,10 +149,12 @@ def part_seconds(job: Job, n_modes: float, n_dofs: int) -> tuple[float, ...]:
         return tuple(_DIRECT * steps * (len(p) + 2) * n_dofs**1.2 for p in job.parts)
     a_run = 1.5e-7 * contacts + (0.8e-7 + 1.8e-7 * roads) * points
     a_run += 1.5e-11 * n_modes * (points + contacts)
-    found = [0.5 + steps * (2.6e-7 * n_modes + len(part) * a_run) for part in job.parts]
+    found = [steps * (_PASS + 2.6e-7 * n_modes + len(part) * a_run) for part in job.parts]
     if job.n_waves:
         a_wave = 8.3e-10 * n_modes + 6e-8 * contacts + 2.2e-7 * points
-        found.append(2.0 * job.n_waves * steps * a_wave)
+        at_once = max(1, runs_at_once(job.crossings, dt, job.duration, points) // 2)
+        passes = float(np.ceil(job.n_waves * len(job.crossings) / at_once))
+        found.append(steps * (passes * _PASS + 2.0 * job.n_waves * len(job.crossings) * a_wave))
     if job.map is not None:
         columns = 67.0 + job.map.runs * roads * (1.5 if job.map.peaks else 1.0)
         found.append(2e-8 * steps * len(job.map.places) * columns)

@@ -56,7 +56,8 @@ def run(
     study = load_study(path)
     check_fail_on(fail_on, () if study.assessment is None else study.assessment.criteria)
     check_target(out)
-    for warning in study_doubts(study):
+    told = list(study_doubts(study))
+    for warning in told:
         warn(warning, show)
     check_affordable(str(path), estimate_of(study), yes=yes)
     place = out.resolve()
@@ -80,6 +81,11 @@ def run(
     report = place / "report.html"
     if show == "tables":
         print_result(result)
+    for method, found in result.warnings().items() if show != "json" else ():
+        for warning in found:
+            if warning not in told:
+                warn(f"{method}: {warning}", show)
+    if show == "tables":
         print(f"\nreport: {report}")
     elif show == "json":
         say_json(json.loads((place / "summary.json").read_text("utf-8")) | {"report": str(report)})

@@ -25,6 +25,7 @@ from trundle.simulate import Coverage, Runs
 
 __all__ = ["assess", "assess_reduced", "best_class", "spectra_asked_for"]
 
+_STILL = 1e-12  # SI: below it no floor moves under a vehicle, and no sensor sees it
 _TOP = 80.0  # Hz: how far single numbers are asked to reach
 
 
@@ -176,8 +177,12 @@ def _by_band(
     values = spectra.values[:, point]
     missing = _missing(spectra, criterion, asked)
     unexcited = _named(spectra, spectra.mid_band[asked & spectra.resolved & ~excited])
-    reasons = (*_not_shown(missing), *coverage.reasons(waves=bool(unexcited)))
     _refuse_non_finite(values[:, usable], criterion, name)
+    reasons = (
+        *_not_shown(missing),
+        *coverage.reasons(waves=bool(unexcited)),
+        *_still(values[:, usable]),
+    )
     level = np.full(len(limits), np.nan)
     known = spectra.resolved
     level[known] = np.percentile(values[:, known], percentile, axis=0)
@@ -253,6 +258,16 @@ def _not_shown(missing: tuple[float, ...]) -> tuple[str, ...]:
     )
 
 
+def _still(values: Array) -> tuple[str, ...]:
+    """Say that nothing moves, which is no low level: something is held, or has a wrong unit."""
+    if not values.size or float(np.abs(values).max()) > _STILL:
+        return ()
+    return (
+        "nothing moves there: the point or the route stands on an edge or support that is held, or "
+        "a unit is wrong",
+    )
+
+
 def _interval(values: Array, percentile: float, limit: float) -> tuple[float, float]:
     """Return where a margin lies with 95 % confidence."""
     if len(values) < 2:
@@ -288,7 +303,11 @@ def _by_number(
     (top, coverage), asked = reach, float(min(criterion.frequencies[-1], _TOP)) * (1 - 1e-6)
     missing = () if top >= asked else (round(asked, 1),)
     unexcited = () if coverage.excited_to >= asked else (round(asked, 1),)
-    reasons = (*_not_shown(missing), *coverage.reasons(waves=bool(unexcited)))
+    reasons = (
+        *_not_shown(missing),
+        *coverage.reasons(waves=bool(unexcited)),
+        *_still(values),
+    )
     return Verdict(
         criterion=criterion,
         point=point,

@@ -66,6 +66,9 @@ def new_figure(
 def make_logarithmic(axes: Axes, which: str) -> None:
     """Make the axes named in `which` (x, y or both) logarithmic, with plain numbers on them."""
     for name in which:
+        span = axes.dataLim.intervaly if name == "y" else axes.dataLim.intervalx
+        if not max(span) > 0.0:
+            continue  # nothing above 0 to draw: a logarithm has no place for it
         getattr(axes, f"set_{name}scale")("log")
         axis = axes.xaxis if name == "x" else axes.yaxis
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))

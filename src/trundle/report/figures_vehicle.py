@@ -14,9 +14,12 @@ from trundle.report.canvas import COLOURS, new_figure
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import Ramp, Route
 from trundle.simulate import Crossing, contact_forces
+from trundle.simulate.step_limits import longest_step
 from trundle.vehicle import GRAVITY, Vehicle
 
 __all__ = ["axle_forces_figure", "vehicle_figure", "vehicle_modes_figure"]
+
+_MOST_STEPS = 50_000  # drawn: of a very stiff vehicle the beginning
 
 
 def vehicle_figure(vehicle: Vehicle) -> Figure:
@@ -105,9 +108,13 @@ def axle_forces_figure(
         crossing = Crossing(
             vehicle=vehicle, route=route, road=road, band=band, entry=Ramp(length=1.0)
         )
-        step = Modal(f_max=100.0, dt=min(0.005, 0.4 / (band.n_max * speed)))
+        dt = min(0.005, 0.4 / (band.n_max * speed), longest_step(vehicle))
         time, forces = contact_forces(
-            crossing, integration=step, n_runs=1, seed=seed, duration=duration
+            crossing,
+            integration=Modal(f_max=100.0, dt=dt),
+            n_runs=1,
+            seed=seed,
+            duration=min(duration, _MOST_STEPS * dt),
         )
         for i in reversed(range(vehicle.n_contacts)):
             dynamic = (forces[0, :, i] - vehicle.static_forces[i]) / GRAVITY / 1e3

@@ -13,6 +13,7 @@ from trundle.response.reduction import (
     reduce_rougher,
     reduce_runs,
 )
+from trundle.response.size_warnings import size_warnings
 from trundle.response.spectra import (
     BandSpectra,
     SpectrumQuantity,
@@ -40,6 +41,7 @@ __all__ = [
     "reduce_record",
     "reduce_rougher",
     "reduce_runs",
+    "size_warnings",
     "spectra_of",
     "upper_bounds",
     "velocity_spectra",

@@ -267,6 +267,11 @@ def lay_out(
     length = duration if duration is not None else _natural_duration(many)
     timeline = timeline_of(many, dt, positive("duration", length))
     rows = operator_rows(floor.floor, many, timeline, method.contact)
+    if not len(rows.used_dofs()):
+        raise InputError(
+            "no wheel loads the floor at any step: the route runs along an edge that is held, or "
+            "is shorter than a step; move it onto the floor, or lengthen it"
+        )
     reader = _point_rows(floor.floor, points)
     coupled = isinstance(method, Coupled)
     residual = None

@@ -20,6 +20,7 @@ __all__ = ["relation_problems"]
 _MAX_STEPS = 1_000_000
 _MAX_HISTORY = 4e9  # bytes of histories held at once for one cell
 _EDGE = 1e-6  # m
+_HELD = ("simple", "pinned", "clamped")
 _TOP = 80.0  # Hz: bands are assessed up to here
 
 
@@ -36,12 +37,14 @@ def relation_problems(
     found = list(_references(file))
     if plan is not None:
         found += _places(file, plan)
+        found += _on_held_edges(file, plan)
         found += _supports(plan)
     found += _time_steps(file, methods)
     if band is not None:
         found += _roughness(drives, methods, band, follows_dt=follows_dt)
     found += _sizes(file, drives, methods)
     found += _entries(drives, methods)
+    found += _short_routes(drives, methods)
     found += _vehicle_steps(drives, methods)
     return found
 
@@ -118,6 +121,38 @@ def _places(file: StudyFile, plan: FloorPlan) -> Iterator[Problem]:
                 rule=f"a point must lie on the floor; {covered}",
                 remedy="move it onto the floor",
             )
+
+
+def _on_held_edges(file: StudyFile, plan: FloorPlan) -> Iterator[Problem]:
+    """Give routes that run along an edge that is held: their wheels load nothing."""
+    held = [(e, p) for e, p in plan.edge_lines().items() if plan.edges.get(e, "free") in _HELD]
+    for i, section in file.lists.get("route", []):
+        for edge, (axis, position) in held:
+            if all(abs(place[axis] - position) < _EDGE for place in section.path):
+                yield Problem(
+                    place=f"route[{i + 1}].path",
+                    value=f"a way along {edge}, which is {plan.edges[edge]}",
+                    rule="wheels on an edge that is held load the floor nowhere",
+                    remedy="move the route onto the floor, or hold the edge otherwise",
+                )
+
+
+def _short_routes(
+    drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]
+) -> Iterator[Problem]:
+    """Give routes that a wheel is on for less than two steps."""
+    for name, drive in drives.items():
+        time = drive.route.law.time_to(drive.route.length)
+        for method in methods.values():
+            dt = method.interaction.integration.dt
+            if time < 2.0 * dt:
+                yield Problem(
+                    place=f"route {name!r}.path",
+                    value=f"{drive.route.length:g} m",
+                    rule=f"a wheel is on it for {1e3 * time:.3g} ms, and method {method.name!r} "
+                    f"looks every {1e3 * dt:g} ms",
+                    remedy="lengthen the route; 'trundle check' draws the plan",
+                )
 
 
 def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:

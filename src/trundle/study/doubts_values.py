@@ -160,18 +160,16 @@ def _rough_roads(study: Study) -> Iterator[FitnessWarning]:
 def _still_points(study: Study) -> Iterator[FitnessWarning]:
     """Doubt points on an edge that cannot move."""
     plan = study.plan
-    sides = zip(
-        ("x_min", "x_max", "y_min", "y_max"),
-        (0, 0, 1, 1),
-        (*plan.x_extent, *plan.y_extent),
-        strict=True,
-    )
-    held = [s for s in sides if plan.edges.get(s[0]) in ("simple", "pinned", "clamped")]
+    held = [
+        (edge, *where)
+        for edge, where in plan.edge_lines().items()
+        if plan.edges.get(edge) in ("simple", "pinned", "clamped")
+    ]
     for name, at in study.points.items():
         for edge, axis, position in held:
             if abs(at[axis] - position) < _ON_EDGE:
                 yield FitnessWarning(
                     subject=f"point {name!r}",
                     message=f"it stands on the edge {edge}, which is {plan.edges[edge]} and cannot "
-                    "move: every limit is kept there; read the response inside the floor",
+                    "move: nothing is assessed there; read the response inside the floor",
                 )

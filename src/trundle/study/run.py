@@ -9,8 +9,8 @@ import numpy as np
 
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes, repeatable
-from trundle.errors import FitnessWarning
-from trundle.response import BandSpectra, few_runs_warnings, level_warnings
+from trundle.errors import FitnessWarning, InputError
+from trundle.response import BandSpectra, few_runs_warnings, level_warnings, size_warnings
 from trundle.simulate import Coupled, Crossing, PreparedFloor, StaticFlexibility, prepare
 from trundle.structure import Floor
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
@@ -59,7 +59,9 @@ class StudyResult:
         """Return the doubts of each method, each once."""
         by_method: dict[str, dict[FitnessWarning, None]] = {}
         for key, cell in self.cells.items():
-            by_method.setdefault(key.method, {}).update(dict.fromkeys(cell.warnings))
+            sizes = size_warnings({f"{key.case}, class {key.road}": cell.reduced})
+            doubts = dict.fromkeys((*cell.warnings, *sizes))
+            by_method.setdefault(key.method, {}).update(doubts)
         assessment = self.study.assessment
         if assessment is not None and assessment.method in by_method:
             doubts = (
@@ -252,7 +254,22 @@ def _all_modes(study: Study, tell: Report) -> Modes | None:
     label = f"modes of the floor below {f_max:g} Hz"
     tell(label, 0.0)
     with repeatable():
-        return modes_of(study.floor, f_max=f_max, progress=lambda share: tell(label, share))
+        modes = modes_of(study.floor, f_max=f_max, progress=lambda share: tell(label, share))
+    _check_first_mode(study, modes)
+    return modes
+
+
+def _check_first_mode(study: Study, modes: Modes) -> None:
+    """Refuse a method that keeps no mode below half its frequency: nothing would tell its error."""
+    first = float(modes.frequencies[0])
+    for method in study.methods:
+        f_max = getattr(method.interaction.integration, "f_max", np.inf)
+        if first >= 0.5 * f_max:
+            raise InputError(
+                f"{study.source}: method {method.name!r} keeps modes to f_max = {f_max:g} Hz, and "
+                f"the floor's first is at {first:.3g} Hz: raise f_max above {2.0 * first:.3g} Hz, "
+                "better to 112 Hz, which shows all bands to 80 Hz"
+            )
 
 
 def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:

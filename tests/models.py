@@ -6,43 +6,20 @@ import numpy as np
 
 from trundle.structure import (
     CONCRETE,
-    BeamGroup,
-    BeamSection,
     Floor,
     FloorPlan,
-    Material,
     Rectangle,
     ShellSection,
+    beam_bridge,
     build_floor,
 )
 
 
-def simple_beam(
-    *, length: float, rigidity: float, line_mass: float, n_elements: int, modulus: float = 3.5e10
-) -> Floor:
-    """Build a simply supported Bernoulli-Euler beam along x that moves in x-z only.
-
-    Rotary inertia is kept negligible by a small density on a large area.
-    """
-    inertia = rigidity / modulus
-    area = 1e8 * np.sqrt(inertia)
-    material = Material(elastic_modulus=modulus, poisson_ratio=0.2, density=line_mass / area)
-    section = BeamSection(
-        area=area,
-        inertia_y=inertia,
-        inertia_z=inertia,
-        torsion_constant=inertia,
-        shear_area_y=np.inf,
-        shear_area_z=np.inf,
-        material=material,
+def simple_beam(*, length: float, rigidity: float, line_mass: float, n_elements: int) -> Floor:
+    """Build a simply supported Bernoulli-Euler beam along x that moves in x-z only."""
+    return beam_bridge(
+        length=length, bending_stiffness=rigidity, line_mass=line_mass, n_elements=n_elements
     )
-    x = np.linspace(0.0, length, n_elements + 1)
-    nodes = np.column_stack([x, np.zeros_like(x), np.zeros_like(x)])
-    fixed = np.ones((len(x), 6), dtype=bool)
-    fixed[:, [2, 4]] = False
-    fixed[[0, -1], 2] = True
-    elements = np.column_stack([np.arange(n_elements), np.arange(1, n_elements + 1)])
-    return Floor(nodes=nodes, fixed=fixed, beams=(BeamGroup(elements=elements, section=section),))
 
 
 def small_plan(**changes: object) -> FloorPlan:

@@ -6,9 +6,8 @@ import pytest
 from models import small_floor
 from trundle.dynamics import Modal, ModalRatio
 from trundle.road import Profile, RoadClass, RoughnessBand
-from trundle.route import Abrupt, DriveIn, Route
+from trundle.route import Abrupt, DriveIn, Route, entry_named
 from trundle.simulate import Crossing, Decoupled, ensemble
-from trundle.study.model import entry_of
 from trundle.vehicle import container_truck_40ft
 
 METHOD = Decoupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.03))
@@ -50,4 +49,4 @@ def test_its_words():
     assert str(Abrupt()) == "abrupt: each axle's whole load at once"
     with pytest.raises(TypeError):
         Abrupt(length=1.0)
-    assert isinstance(entry_of("abrupt", 2.0), Abrupt)
+    assert isinstance(entry_named("abrupt"), Abrupt)

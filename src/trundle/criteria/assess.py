@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import within
+from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.criteria.curve import BY_FREQUENCY, Criterion
 from trundle.criteria.verdict import BandOutcomes, Status, Verdict
@@ -29,6 +30,7 @@ _STILL = 1e-12  # SI: below it no floor moves under a vehicle, and no sensor see
 _TOP = 80.0  # Hz: how far single numbers are asked to reach
 
 
+@kinds_checked
 def assess(
     runs: Runs,
     criteria: Criterion | Sequence[Criterion],
@@ -75,6 +77,7 @@ def spectra_asked_for(criteria: Iterable[Criterion]) -> tuple[SpectrumQuantity, 
     return tuple(dict.fromkeys(found))  # pyright: ignore[reportReturnType] - what is left are spectra
 
 
+@kinds_checked
 def assess_reduced(
     reduced: Reduced,
     criteria: Criterion | Sequence[Criterion],

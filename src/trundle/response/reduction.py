@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float
 from scipy import stats
 
 from trundle._checks import within
+from trundle._kinds import kinds_checked
 from trundle._typing import Array, ArrayLike
 from trundle.response.spectra import BandSpectra, SpectrumQuantity, spectra_of
 from trundle.signals import (
@@ -63,6 +64,7 @@ class Reduced:
     tension: Bool[Array, "runs contacts"]
 
 
+@kinds_checked
 def reduce_runs(
     runs: Runs,
     *,

@@ -1,7 +1,7 @@
 """Say where vehicles drive, and connect a moving wheel to the floor's dofs."""
 
 from trundle.route.contact import ContactRows, ContactShape, Hat, Hermite, contact_rows
-from trundle.route.entry import Abrupt, DriveIn, Entry, Ramp, StaticStart
+from trundle.route.entry import Abrupt, DriveIn, Entry, Ramp, StaticStart, entry_named
 from trundle.route.locate import Deck, deck_of
 from trundle.route.path import ConstantSpeed, Route, SpeedLaw, SteadyAcceleration
 
@@ -22,4 +22,5 @@ __all__ = [
     "SteadyAcceleration",
     "contact_rows",
     "deck_of",
+    "entry_named",
 ]

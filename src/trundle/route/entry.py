@@ -8,10 +8,11 @@ from typing import TypeAlias
 import numpy as np
 from jaxtyping import Float
 
-from trundle._checks import positive, set_frozen
+from trundle._checks import one_of, positive, set_frozen
 from trundle._typing import Array
+from trundle.errors import InputError
 
-__all__ = ["Abrupt", "DriveIn", "Entry", "Ramp", "StaticStart"]
+__all__ = ["Abrupt", "DriveIn", "Entry", "Ramp", "StaticStart", "entry_named"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,3 +156,32 @@ class Abrupt:
 
 Entry: TypeAlias = Ramp | DriveIn | StaticStart | Abrupt
 """The ways onto a floor."""
+
+
+def entry_named(name: str, length: float | None = None) -> Entry:
+    """Return the entry of a name.
+
+    Parameters
+    ----------
+    name : {"drive_in", "ramp", "static", "abrupt"}
+        Over a stretch of floor that carries more and more of a wheel; by a ramp before the edge;
+        standing on the floor from the start; each axle's whole load at once.
+    length : float, optional
+        Of the stretch, the ramp, or a static start's way out [m]: 3 m of a drive-in and 1 m of the
+        others unless given. An abrupt entry has none.
+
+    Raises
+    ------
+    InputError
+        Another name, or a length of what has none.
+    """
+    one_of("entry", name, ("drive_in", "ramp", "static", "abrupt"))
+    if name == "abrupt":
+        if length is not None:
+            raise InputError(f"an abrupt entry has no length; got {length:g} m")
+        return Abrupt()
+    if name == "ramp":
+        return Ramp(length=length or 1.0)
+    if name == "static":
+        return StaticStart(exit_length=length or 1.0)
+    return DriveIn(length=length or 3.0)

@@ -9,6 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import finite, frozen_array, positive, set_frozen
+from trundle._kinds import kinds_checked
 from trundle._typing import Array, ArrayLike
 from trundle.errors import InputError
 
@@ -110,6 +111,7 @@ class SteadyAcceleration:
         return 2.0 * distance / (self.initial + float(np.sqrt(square)))
 
 
+@kinds_checked
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Route:
     """Hold a polyline on the floor and the speed along it.

@@ -22,6 +22,7 @@ from trundle.simulate.harmonics import (
 from trundle.simulate.layout import Layout, lay_out
 from trundle.simulate.place_spectra import place_spectra
 from trundle.simulate.places import PlaceResponses, lay_out_places
+from trundle.simulate.point_load import point_load_deflection
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.runs import MeanResponse, Runs
 from trundle.simulate.truncation import TruncationChange, truncation_change
@@ -57,6 +58,7 @@ __all__ = [
     "mean_response",
     "place_spectra",
     "place_waves",
+    "point_load_deflection",
     "prepare",
     "resolved_to",
     "runs_with_mean",

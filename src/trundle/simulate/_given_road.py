@@ -92,7 +92,7 @@ def given_road(crossing: Crossing, timeline: Timeline, columns: slice) -> GivenR
     station, road = lying.station, lying.road
     elevation, slope = road.at(station)
     slope = _over_kinks(road, station, slope)
-    level, grade = _plane(crossing.vehicle, lying)
+    level, grade = (0.0, 0.0) if crossing.start == "level" else _plane(crossing.vehicle, lying)
     return GivenRoad(
         elevation=elevation - level - grade * (station - station[0, 0]), slope=slope - grade
     )

@@ -70,6 +70,9 @@ def roads_under_wheels(
             felt = stiffness[columns] * given.elevation + rolling[:, columns] * given.slope
             push[:, columns, len(runs) :] = felt[:, :, None]
             first[columns, len(runs) :] = given.elevation[0][:, None]
+    for crossing, columns in columns_of(crossings):
+        if crossing.start == "level":
+            first[columns] = 0.0
     return RoadUnderWheels(push=push, start=first)
 
 

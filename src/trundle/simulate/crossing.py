@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, field
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 import numpy as np
 
-from trundle._checks import finite, non_negative, set_frozen
+from trundle._checks import finite, non_negative, one_of, set_frozen
+from trundle._kinds import kinds_checked
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
-from trundle.route import ContactShape, DriveIn, Entry, Hermite, Route
+from trundle.route import ContactShape, DriveIn, Entry, Hermite, Route, StaticStart
 from trundle.vehicle import Vehicle
 
 __all__ = ["Coupled", "Crossing", "Decoupled", "Integration", "Interaction"]
@@ -22,6 +23,7 @@ Integration: TypeAlias = Newmark | Modal
 _RUN_IN_LIMIT = 20.0  # s; a vehicle without damping would otherwise run in for ever
 
 
+@kinds_checked
 @dataclass(frozen=True, eq=False)
 class Crossing:
     """Hold one vehicle's drive over the floor.
@@ -38,7 +40,7 @@ class Crossing:
     band : RoughnessBand
         Spatial frequencies of a random road; its contact patch averages a given profile too.
     entry : Entry
-        How wheels come onto the floor.
+        How wheels come onto the floor; `entry_named` gives one by its name.
     run_in : float or None
         Distance driven on rigid rough ground before time 0 [m]; None lets the slowest
         motion of the vehicle decay to 5 %, 0 starts it in equilibrium: at rest, or climbing
@@ -48,6 +50,10 @@ class Crossing:
         rest at time 0.
     chainage : float
         Station of a given profile at the route's start [m].
+    start : {"equilibrium", "level"}
+        How the vehicle begins, before its run-in if it has one: at rest in equilibrium on the
+        road under its wheels, or level, as over a road of no height, so that the height of the
+        road there hits it as a step; closed forms of the literature mostly begin so.
     """
 
     vehicle: Vehicle
@@ -59,9 +65,16 @@ class Crossing:
     run_in: float | None = None
     depart: float = 0.0
     chainage: float = 0.0
+    start: Literal["equilibrium", "level"] = "equilibrium"
 
     def __post_init__(self) -> None:
         """Check times and distances."""
+        one_of("start", self.start, ("equilibrium", "level"))
+        if self.start == "level" and isinstance(self.entry, StaticStart):
+            raise InputError(
+                "a static start is in equilibrium with the floor: leave start out, or choose "
+                "another entry"
+            )
         set_frozen(self, depart=non_negative("depart", self.depart))
         set_frozen(self, chainage=finite("chainage", self.chainage))
         if self.chainage != 0.0 and not isinstance(self.road, Profile):
@@ -107,6 +120,7 @@ class Crossing:
         return float(place[0, 0]), float(place[0, 1])
 
 
+@kinds_checked
 @dataclass(frozen=True, kw_only=True)
 class Decoupled:
     """Load the floor with the contact forces of a vehicle on rigid ground.
@@ -137,6 +151,7 @@ class Decoupled:
         return f"decoupled; {self.integration}; {self.damping}; {self.contact}"
 
 
+@kinds_checked
 @dataclass(frozen=True, kw_only=True)
 class Coupled:
     """Solve vehicle and floor together at every step, without factorising anything again.

@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import count
+from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.simulate._march import Record
 from trundle.simulate._roads import roads_under_wheels
@@ -35,6 +36,7 @@ LEAST_BATCH = 16  # runs held at once however long their histories are
 _MOST_RUNS = 1024  # in a batch; more would gain nothing
 
 
+@kinds_checked
 def ensemble(
     floor: Floor | PreparedFloor,
     crossings: Crossing | Sequence[Crossing],
@@ -84,6 +86,7 @@ def ensemble(
     return next(batches(layout, runs=runs, seed=seed, batch=n_runs, progress=progress))
 
 
+@kinds_checked
 def batches(
     layout: Layout,
     *,
@@ -211,6 +214,7 @@ def _batch_size(timeline: Timeline, n_points: int) -> int:
     return int(np.clip(_BATCH_BYTES / (8.0 * values), LEAST_BATCH, _MOST_RUNS))
 
 
+@kinds_checked
 def contact_forces(
     crossing: Crossing, *, integration: Integration, n_runs: int, seed: int, duration: float
 ) -> tuple[Array, Array]:

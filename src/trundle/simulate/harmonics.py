@@ -262,6 +262,9 @@ def _wave_road(layout: Layout, sets: list[_WaveSet]) -> RoadUnderWheels:
                 road.push[:, i, place] = take(felt)
                 road.start[i, place] = take(unit[0])
         at = cosine.stop
+    for crossing, columns in columns_of(layout.crossings):
+        if crossing.start == "level":
+            road.start[columns] = 0.0
     return road
 
 

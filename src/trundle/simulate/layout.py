@@ -11,6 +11,7 @@ from scipy import sparse
 from threadpoolctl import ThreadpoolController
 
 from trundle._checks import positive
+from trundle._kinds import kinds_checked
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import (
     ExactRecursion,
@@ -225,6 +226,7 @@ class Layout:
         return drive(law, floor, (vehicle, still, forces), timeline, road, progress=progress)
 
 
+@kinds_checked
 def lay_out(
     floor: Floor | PreparedFloor,
     crossings: Crossing | Sequence[Crossing],

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trundle._kinds import kinds_checked
 from trundle.dynamics import (
     Damping,
     LinearSystem,
@@ -81,6 +82,7 @@ class PreparedFloor:
         return isinstance(self.integration, Modal) and self.integration.single
 
 
+@kinds_checked
 def prepare(
     floor: Floor,
     integration: Integration,

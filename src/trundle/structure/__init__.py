@@ -1,6 +1,7 @@
 """Model floors with flat shells, eccentric beams, springs and supports."""
 
 from trundle.structure.arching import arching
+from trundle.structure.bridge import beam_bridge
 from trundle.structure.edges import EDGES, Edge
 from trundle.structure.floor import (
     DOF_NAMES,
@@ -39,6 +40,7 @@ __all__ = [
     "ShellSection",
     "SpringGroup",
     "arching",
+    "beam_bridge",
     "build_floor",
     "mesh_lines",
     "reference_plan",

@@ -265,6 +265,11 @@ class Floor:
                 digest.update(np.ascontiguousarray(part).tobytes())
         return digest.hexdigest()[:16]
 
+    def nearest_node(self, x: float, y: float) -> int:
+        """Return the number of the node nearest to a place in plan [m]."""
+        away = self.nodes[:, :2] - np.array([x, y], dtype=float)
+        return int(np.argmin(np.einsum("ij,ij->i", away, away)))
+
     def rigid_vector(self, dof: int) -> Float[Array, " dofs"]:
         """Return the vector of ones in one of the six dofs, over the free dofs."""
         vector = np.zeros(self.n_dofs)

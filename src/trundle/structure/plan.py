@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import count, frozen_array, one_of, positive, set_frozen
+from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.edges import EDGES, Edge, hold_edge, hold_plane, middle_of
@@ -139,6 +140,7 @@ class FloorPlan:
         return (starts[:, None] + spans[:, None] * shares).ravel()
 
 
+@kinds_checked
 def build_floor(plan: FloorPlan, *, mesh_size: float) -> Floor:
     """Mesh a plan with rectangular shells no longer than a size.
 

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
+from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.criteria import (
     BY_FREQUENCY,
@@ -100,6 +101,7 @@ class RecordResult:
         return (*self.runs.warnings, *level_warnings(self.averaging, length))
 
 
+@kinds_checked
 def assess_record(
     record: Record,
     criteria: Sequence[Criterion],

@@ -7,16 +7,14 @@ from dataclasses import replace
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
-from trundle.route import Hat, Hermite
+from trundle.route import Hat, Hermite, entry_named
 from trundle.simulate import Coupled, Decoupled, Integration
 from trundle.study._attempt import attempt
-from trundle.study.model import MethodPlan, entry_of
+from trundle.study.model import MethodPlan
 from trundle.study.read import StudyFile
 from trundle.study.schema import MethodSection
 
 __all__ = ["methods_of"]
-
-_DEFAULT_DRIVE_IN = 3.0  # m
 
 
 def methods_of(
@@ -54,11 +52,11 @@ def methods_of(
             continue
         kind = Coupled if section.interaction == "coupled" else Decoupled
         contact = Hat() if section.contact == "hat" else Hermite()
-        default = _DEFAULT_DRIVE_IN if section.entry == "drive_in" else mesh_size
+        default = {"drive_in": None, "abrupt": None}.get(section.entry, mesh_size)
         methods[section.name] = MethodPlan(
             name=section.name,
             interaction=kind(integration=integration, damping=damping, contact=contact),
-            entry=entry_of(section.entry, section.entry_length or default),
+            entry=entry_named(section.entry, section.entry_length or default),
             band=own,
         )
     return methods, problems

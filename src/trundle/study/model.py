@@ -9,7 +9,7 @@ import numpy as np
 
 from trundle.criteria import Criterion
 from trundle.road import RoadClass, RoughnessBand
-from trundle.route import Abrupt, ConstantSpeed, DriveIn, Entry, Ramp, Route, StaticStart
+from trundle.route import ConstantSpeed, Entry, Route
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.structure import Floor, FloorPlan
@@ -258,17 +258,6 @@ class Study:
         speed = float(drive.route.law.speed(0.0))
         limit = 0.5 / (speed * method.interaction.integration.dt)
         return replace(band, n_max=min(band.n_max, limit))
-
-
-def entry_of(kind: str, length: float) -> Entry:
-    """Return the entry that a study file names."""
-    if kind == "ramp":
-        return Ramp(length=length)
-    if kind == "static":
-        return StaticStart(exit_length=length)
-    if kind == "abrupt":
-        return Abrupt()
-    return DriveIn(length=length)
 
 
 def road_label(section: schema.RoadSection) -> str:

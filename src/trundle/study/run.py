@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trundle._kinds import kinds_checked
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import FitnessWarning, InputError
@@ -98,6 +99,7 @@ def _map_warnings(study: Study, percentile: float) -> tuple[FitnessWarning, ...]
     return tuple(FitnessWarning(subject="runs of the map", message=w.message) for w in found)
 
 
+@kinds_checked
 def run_study(
     study: Study,
     *,

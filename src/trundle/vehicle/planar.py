@@ -8,6 +8,7 @@ import numpy as np
 from scipy import linalg
 
 from trundle._checks import finite, non_negative, positive, set_frozen
+from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.dynamics import LinearSystem
 from trundle.errors import InputError
@@ -150,6 +151,7 @@ def wheel_mistake(axle_mass: float, tyre_stiffness: float, tyre_damping: float) 
     return ""
 
 
+@kinds_checked
 def build_vehicle(
     *,
     name: str,

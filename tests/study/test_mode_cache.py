@@ -200,3 +200,14 @@ def test_switched_off_or_not_writable_it_still_works(tmp_path, monkeypatch, coun
     monkeypatch.setenv("TRUNDLE_CACHE", str(tmp_path / "file" / "modes"))
     modes_of(floor, f_max=20.0)
     assert counted == [20.0, 20.0]
+
+
+def test_what_would_unpack_to_a_thousand_times_its_size_is_not_unpacked(folder, counted):
+    floor = small_floor(mesh_size=2.0)
+    modes_of(floor, f_max=20.0)
+    (file,) = folder.iterdir()
+    with np.load(file) as kept:
+        arrays = {n: kept[n] for n in kept.files}
+    np.savez_compressed(file, **arrays, more=np.zeros(10**7))
+    modes_of(floor, f_max=20.0)
+    assert counted == [20.0, 20.0]

@@ -136,3 +136,9 @@ def test_parts_lost_while_they_are_waited_for_are_sent_again(monkeypatch, tmp_pa
     cluster.submit(job, range(2), LaidOut(layout=7, places=None))
     cluster.collect(lambda _name, layout: found.append(layout), wait=True)
     assert found == [7, 7]
+
+
+def test_every_part_asks_its_worker_for_its_source():
+    """A worker may join when the work is under way; nothing of another's is stored."""
+    with pytest.raises(ComputationError, match="has another trundle"):
+        scale_out._compute(None, None, 0, scale_out.source_hash() + "edited")

@@ -1,5 +1,7 @@
 """A user's own criteria, from files beside the study."""
 
+import os
+
 import numpy as np
 import pytest
 from test_bad_input import GOOD
@@ -69,7 +71,7 @@ def test_generic_curves_of_a_study_may_be_flat(tmp_path):
         ("a.toml", TOML.replace('"0.02 gal"', '"-0.02 gal"'), "greater than 0"),
         ("a.toml", TOML.replace("source", "sauce"), "unknown key 'sauce'"),
         ("a.toml", TOML.replace("[[curve]]", "[curve]"), "holds no criterion"),
-        ("a.toml", "curve = 3 4", "not TOML"),
+        ("a.toml", "curve = 3 4", "a line ends behind its value"),
         ("a.toml", TOML + 'axis = "sideways"', "axis must be one of"),
         ("a.toml", TOML + "aliases = 5", "must be a list of names"),
         ("a.toml", TOML.replace('"1 Hz"', '"-1 Hz"'), "must be above 0"),
@@ -128,3 +130,25 @@ def test_isolators_that_cannot_be(tmp_path, isolator):
     text = GOOD.replace("[[point]]", f"[[point]]\nisolator = {isolator}", 1)
     with pytest.raises(StudyError, match=r"point\[1\].isolator"):
         load_study(written(tmp_path, "s.toml", text))
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".toml"])
+def test_a_pipe_is_not_waited_for(tmp_path, suffix):
+    path = tmp_path / f"own{suffix}"
+    os.mkfifo(path)
+    with pytest.raises(InputError, match="a device or a pipe"):
+        read_criteria(path)
+
+
+def test_what_is_no_toml_is_told_with_its_line(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text('[[curve]]\nname = "x"\npoints = [["1 Hz", "1 um/s"]\n')
+    with pytest.raises(InputError, match=r"line 3: a list ends with \]; got 'points"):
+        read_criteria(path)
+
+
+def test_an_endless_field_is_named(tmp_path):
+    path = tmp_path / "own.csv"
+    path.write_text('# quantity = band_rms_velocity\nfrequency [Hz], "' + "a" * 140_000)
+    with pytest.raises(InputError, match="no table of a criterion"):
+        read_criteria(path)

@@ -6,17 +6,18 @@ import hashlib
 import io
 import os
 import tempfile
+import zipfile
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from trundle._typing import Array
 from trundle.errors import InputError
 
-__all__ = ["read_kept", "refuse_links", "write_kept"]
+__all__ = ["read_kept", "refuse_links", "stored_as_they_are", "write_kept"]
 
 _DIGEST = 32  # bytes of SHA-256 before the arrays
 
@@ -68,10 +69,20 @@ def read_kept(file: Path, label: str) -> dict[str, Array] | None:
             digest, data = opened.read(_DIGEST), opened.read()
         if _digest(label, data) != digest:
             return None
+        if not stored_as_they_are(io.BytesIO(data)):
+            return None
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
             return {name: arrays[name] for name in arrays.files}
     except Exception:  # readers raise whatever a stranger's archive leads them to
         return None
+
+
+def stored_as_they_are(archive: BinaryIO) -> bool:
+    """Return whether an archive's arrays are not compressed: none unpacks to more than its file."""
+    with zipfile.ZipFile(archive) as members:
+        plain = all(m.compress_type == zipfile.ZIP_STORED for m in members.infolist())
+    archive.seek(0)
+    return plain
 
 
 def _digest(label: str, data: bytes) -> bytes:

@@ -8,11 +8,13 @@ import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from trundle.dynamics import Modes, available_backends, count_modes_below, natural_modes
 from trundle.structure import Floor
+from trundle.study.kept import stored_as_they_are
 
 __all__ = ["cache_folder", "has_modes", "modes_of"]
 
@@ -78,7 +80,7 @@ def _file(floor: Floor, f_max: float) -> Path | None:
 def _read(file: Path, floor: Floor) -> Modes | None:
     """Return what a file holds; None if there is none, or it cannot be what it should."""
     try:
-        with file.open("rb") as opened, np.load(opened, allow_pickle=False) as data:
+        with file.open("rb") as opened, _arrays_of(opened) as data:
             modes = Modes(
                 omega=data["omega"],
                 shapes=data["shapes"],
@@ -90,6 +92,13 @@ def _read(file: Path, floor: Floor) -> Modes | None:
     except Exception:  # readers raise whatever damage leads them to
         return None
     return modes if whole and _are_of(floor, modes) else None
+
+
+def _arrays_of(opened: BinaryIO) -> Any:  # noqa: ANN401 - numpy has no name for it
+    """Return the arrays of a file, to be closed; nothing is unpickled or unpacked."""
+    if not stored_as_they_are(opened):
+        raise ValueError("compressed")
+    return np.load(opened, allow_pickle=False)
 
 
 def _digest(modes: Modes) -> bytes:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import logging
 import os
+import platform
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -59,6 +61,7 @@ class Cluster:
             what.job,
             self._sent[place][1],
             what.part,
+            _own_source(),
             key=f"{what.name}-{what.tries}",
             retries=_RETRIES,
             pure=False,
@@ -109,6 +112,10 @@ class Cluster:
                 f"the workers that computed {what.name} died {_RETRIES} times, most likely for "
                 "want of memory; use fewer workers"
             ) from error
+        except (TypeError, AttributeError, ImportError):
+            # what another version of this program makes of the question
+            _check_workers(self._client, "of this cluster")
+            raise
         future.release()
         if not any(other.carrier is what.carrier for other in self._pending.values()):
             self._sent.pop(id(what.carrier), None)
@@ -131,8 +138,13 @@ class _Sent:
 _kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last floor it prepared
 
 
-def _compute(job: Job, carrier: LaidOut | Floor, part: int) -> Piece:
-    """Compute a part, in a worker."""
+def _compute(job: Job, carrier: LaidOut | Floor, part: int, source: str) -> Piece:
+    """Compute a part, in a worker; one that joined late may have another source."""
+    if source != source_hash():
+        raise ComputationError(
+            f"a worker on {platform.node()} has another trundle than the process that asks; what "
+            "was finished is kept: install the same one there, and run it again"
+        )
     with repeatable():
         if isinstance(carrier, LaidOut):
             return compute(job, carrier, part)
@@ -210,6 +222,7 @@ def cluster_at(address: str) -> Generator[Cluster]:
         yield Cluster(client)
 
 
+@functools.cache
 def source_hash() -> str:
     """Return a hash of this program's own source: versions may lie, and be edited in place."""
     root = Path(__file__).resolve().parent.parent
@@ -220,7 +233,7 @@ def source_hash() -> str:
 
 
 def _own_source() -> str:
-    """Return the hash of this process's source."""
+    """Return the hash of this process's source: what workers must have too."""
     return source_hash()
 
 

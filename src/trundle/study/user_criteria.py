@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from trundle.criteria import BY_FREQUENCY, Criterion
-from trundle.errors import InputError
+from trundle.errors import InputError, StudyError
+from trundle.study.lines import parse
 from trundle.units import to_si
 
 __all__ = ["read_criteria"]
@@ -47,22 +47,31 @@ def read_criteria(path: Path) -> tuple[Criterion, ...]:
         A file that cannot be read; a curve that is none, with its place and a remedy.
     """
     try:
-        if path.stat().st_size > _LARGEST:
+        if path.exists() and not path.is_file():
+            raise InputError(f"{path}: is a folder, a device or a pipe, and no criteria file")
+        with path.open("rb") as opened:
+            raw = opened.read(_LARGEST + 1)
+        if len(raw) > _LARGEST:
             raise InputError(f"{path}: a criteria file is at most 1 MB")
-        text = path.read_text("utf-8-sig")
+        text = raw.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
         raise InputError(f"{path}: cannot be read ({reason})") from None
     if path.suffix.lower() == ".csv":
-        return (_from_csv(text, path),)
+        try:
+            return (_from_csv(text, path),)
+        except csv.Error as error:  # a field of 100 kB, say
+            raise InputError(f"{path}: is no table of a criterion ({error})") from None
     return _from_toml(text, path)
 
 
 def _from_toml(text: str, path: Path) -> tuple[Criterion, ...]:
     try:
-        data = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: not TOML: {error}") from None
+        data = parse(text, str(path))
+    except StudyError as error:
+        (problem,) = error.problems
+        at = "" if problem.line is None else f"line {problem.line}: "
+        raise InputError(f"{path}: {at}{problem.rule}; got {problem.value}") from None
     curves = data.get("curve")
     if not isinstance(curves, list) or not curves:
         raise InputError(f"{path}: holds no criterion; write [[curve]] for each")

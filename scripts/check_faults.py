@@ -27,7 +27,7 @@ from queue import Queue
 
 ROOT = Path(__file__).resolve().parent.parent
 FAULTS = Path(__file__).with_name("faults.toml")
-COPIED = ("src", "tests", "pyproject.toml")
+COPIED = ("src", "tests", "scripts", "pyproject.toml")
 TIME_LIMIT = 600  # s for one run of pytest: a fault may keep a loop from ending
 PASSED, FAILED = 0, 1  # of pytest's exit codes, the two that say something about the code
 

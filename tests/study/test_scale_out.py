@@ -42,7 +42,7 @@ class Client:
         self.scattered.append(carrier.layout)
         return Answered(carrier.layout)
 
-    def submit(self, _work, _job, carrier, _part, **_options):
+    def submit(self, _work, _job, carrier, _part, _source, **_options):
         return Answered(carrier.value)
 
 

@@ -22,7 +22,7 @@ from trundle.units import motion_scale, to_si
 __all__ = ["RecordOptions", "read_record"]
 
 _LARGEST = 2_000_000_000  # bytes
-_LARGEST_TEXT = 500_000_000  # bytes: lines and cells of a text take some ten times as much
+_LARGEST_TEXT = 300_000_000  # bytes: lines, cells and levels take up to twelve times as much
 _MISMATCH = 0.005  # relative, between a stated rate and that of the time stamps
 
 
@@ -108,7 +108,7 @@ def _bytes_of(path: Path) -> bytes:
             raise InputError(f"{path}: a record is at most 2 GB; cut it into events")
         with path.open("rb") as file:
             if size > _LARGEST_TEXT and format_of(file.read(512)) == "text":
-                raise InputError(f"{path}: a text is at most 0.5 GB; cut it into events")
+                raise InputError(f"{path}: a text is at most 300 MB; cut it into events")
             file.seek(0)
             return file.read(_LARGEST + 1)
     except OSError as error:

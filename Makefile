@@ -48,6 +48,7 @@ else
 validate: .venv/.ready-dev
 	$(BIN)/python -m pytest -n 2 --record=build/validation.json tests/validation
 	$(BIN)/python scripts/mutate_inputs.py
+	$(BIN)/python scripts/kill_at_random.py
 	$(BIN)/python scripts/check_faults.py --json build/faults.json
 	$(BIN)/python scripts/validation_page.py build/validation.json build/faults.json
 endif
@@ -64,6 +65,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/floor_map.py
 	$(BIN)/python benchmarks/scaling.py
 	$(BIN)/python benchmarks/memory.py
+	$(BIN)/python benchmarks/estimate.py
 
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs

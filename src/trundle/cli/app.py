@@ -295,7 +295,8 @@ def _say_error(error: Exception, words: str) -> None:
         from trundle.cli.show import error_as_json
 
         print(error_as_json(error))
-    print(words, file=sys.stderr)
+    # names of files may hold what would steer a terminal
+    print("".join(c if c.isprintable() or c == "\n" else "?" for c in words), file=sys.stderr)
 
 
 def _say_interrupted() -> None:

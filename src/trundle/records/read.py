@@ -165,7 +165,7 @@ def _record(raw: RawRecord, rate: float, options: RecordOptions, path: Path) -> 
         sampling_frequency=rate,
         quantity=quantities.pop(),
         channel_names=tuple(raw.names[i] for i in sound),
-        source=path.name,
+        source="".join(c if c.isprintable() else "?" for c in path.name),
         axes=tuple(_axis(axes[i], raw.names[i]) for i in sound),
         notes=tuple(notes),
     )

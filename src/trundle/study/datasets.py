@@ -131,20 +131,19 @@ def _exact(
 
 
 def _history_dataset(result: StudyResult, method: str) -> xr.Dataset:
+    """Return the first runs of a method; behind the end of a shorter record stands no number."""
     cases, roads, _ = _grid(result)
+    histories = [[result.cells[CellKey(c, r, method)].history for r in roads] for c in cases]
+    time = max((row[0].time for row in histories), key=len)
 
     def variable(name: str, units: str) -> Variable:
-        data = np.stack(
-            [
-                np.stack(
-                    [getattr(result.cells[CellKey(c, r, method)].history, name) for r in roads]
-                )
-                for c in cases
-            ]
-        )
+        data = np.full((len(cases), len(roads), len(time), len(result.study.points)), np.nan)
+        for i, row in enumerate(histories):
+            for j, history in enumerate(row):
+                values = getattr(history, name)
+                data[i, j, : len(values)] = values
         return (("case", "road", "time", "point"), data, {"units": units, "run": 0})
 
-    time = result.cells[CellKey(cases[0], roads[0], method)].history.time
     return xr.Dataset(
         {
             "displacement": variable("displacement", "m"),

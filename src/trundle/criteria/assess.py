@@ -12,7 +12,7 @@ from trundle._checks import within
 from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.criteria.curve import BY_FREQUENCY, Criterion
-from trundle.criteria.verdict import BandOutcomes, Status, Verdict
+from trundle.criteria.verdict import STILL, BandOutcomes, Status, Verdict
 from trundle.errors import ComputationError
 from trundle.response import (
     BandSpectra,
@@ -26,7 +26,6 @@ from trundle.simulate import Coverage, Runs
 
 __all__ = ["assess", "assess_reduced", "best_class", "spectra_asked_for"]
 
-_STILL = 1e-12  # SI: below it no floor moves under a vehicle, and no sensor sees it
 _TOP = 80.0  # Hz: how far single numbers are asked to reach
 
 
@@ -263,7 +262,7 @@ def _not_shown(missing: tuple[float, ...]) -> tuple[str, ...]:
 
 def _still(values: Array) -> tuple[str, ...]:
     """Say that nothing moves, which is no low level: something is held, or has a wrong unit."""
-    if not values.size or float(np.abs(values).max()) > _STILL:
+    if not values.size or float(np.abs(values).max()) > STILL:
         return ()
     return (
         "nothing moves there: the point or the route stands on an edge or support that is held, or "

@@ -11,6 +11,7 @@ from jaxtyping import Float, Int
 from trundle._checks import within
 from trundle._typing import Array
 from trundle.criteria.curve import Criterion
+from trundle.criteria.verdict import STILL
 from trundle.errors import InputError
 from trundle.response import FloorMap
 from trundle.simulate import Coverage
@@ -33,11 +34,11 @@ class ClassMap:
         Those that a map can be held against: velocity in bands, peak acceleration.
     margin : ndarray of float, shape (n_criteria, n_places)
         Smallest limit over level in the bands computed and excited; below 1 fails; NaN where none
-        was.
+        was, or where nothing moves, as on an edge that is held.
     governing_band : ndarray of float, shape (n_criteria, n_places)
         Mid-band frequency where it is smallest [Hz]; NaN for peaks.
     share_exceeding : ndarray of float, shape (n_criteria, n_places)
-        Share of runs above the limit in any band, 0 to 1.
+        Share of runs above the limit in any band, 0 to 1; NaN where nothing moves.
     complete : tuple of bool
         Whether everything that each criterion asks for was computed and excited, and the vehicles
         have left; else it cannot be passed.
@@ -141,7 +142,7 @@ def envelope_of(maps: Sequence[ClassMap]) -> ClassMap:
         criteria=first.criteria,
         margin=np.take_along_axis(margins, worst, axis=0)[0],
         governing_band=np.take_along_axis(bands, worst, axis=0)[0],
-        share_exceeding=np.max([one.share_exceeding for one in maps], axis=0),
+        share_exceeding=np.fmax.reduce([one.share_exceeding for one in maps]),
         complete=tuple(all(flags) for flags in zip(*(one.complete for one in maps), strict=True)),
         percentile=first.percentile,
     )
@@ -160,11 +161,13 @@ def _by_band(
         nothing = np.full(n_places, np.nan)
         return nothing, nothing, nothing, False
     margins = limits[usable] / np.maximum(level[:, usable], np.finfo(float).tiny)
-    above = (floor.band_levels[:, :, usable] > limits[usable]).any(axis=2).mean(axis=0)
+    levels = floor.band_levels[:, :, usable]
+    above = (levels > limits[usable]).any(axis=2).mean(axis=0)
+    moves = levels.max(axis=(0, 2)) > STILL
     return (
-        margins.min(axis=1),
-        floor.mid_band[usable][margins.argmin(axis=1)],
-        above,
+        np.where(moves, margins.min(axis=1), np.nan),
+        np.where(moves, floor.mid_band[usable][margins.argmin(axis=1)], np.nan),
+        np.where(moves, above, np.nan),
         complete,
     )
 
@@ -179,5 +182,11 @@ def _by_peak(
     value = np.percentile(floor.peak_acceleration, percentile, axis=0)
     margin = limit / np.maximum(value, np.finfo(float).tiny)
     above = (floor.peak_acceleration > limit).mean(axis=0)
+    moves = floor.peak_acceleration.max(axis=0) > STILL
     reach = min(float(criterion.frequencies[-1]), _TOP)
-    return margin, np.full(len(value), np.nan), above, f_max >= reach * (1 - 1e-6)
+    return (
+        np.where(moves, margin, np.nan),
+        np.full(len(value), np.nan),
+        np.where(moves, above, np.nan),
+        f_max >= reach * (1 - 1e-6),
+    )

@@ -12,7 +12,10 @@ from trundle._typing import Array
 from trundle.criteria.curve import Criterion
 from trundle.signals import nominal_frequency
 
-__all__ = ["BandOutcomes", "Status", "Verdict"]
+__all__ = ["STILL", "BandOutcomes", "Status", "Verdict"]
+
+STILL = 1e-12
+"""Level [m/s, m/s2] below which nothing moves under a vehicle, and no sensor sees it."""
 
 Status: TypeAlias = Literal["pass", "fail", "not assessed"]
 """Outcome of a comparison. What was not computed is never a pass."""

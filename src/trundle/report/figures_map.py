@@ -70,7 +70,7 @@ def criterion_map_figure(study: Study, views: list[MapView]) -> Figure:
             norm=LogNorm(0.1, 10.0),
         )
         grid = margin.reshape(len(plan.y), len(plan.x))
-        if np.nanmin(grid) < 1.0 < np.nanmax(grid):
+        if (grid < 1.0).any() and (grid > 1.0).any():
             panel.contour(plan.x, plan.y, grid, levels=[1.0], colors="black", linewidths=1.2)
     if image is not None:
         bar = _bar(figure, image, panels)
@@ -112,7 +112,11 @@ def _level_figure(study: Study, views: list[MapView], levels: list[Array], label
     plan = study.map
     assert plan is not None  # there are views
     figure, panels = _panels(study, views)
-    low, high = (float(take([take(level) for level in levels])) for take in (np.min, np.max))
+    # Where nothing moves, as on a held edge, there is no place on a logarithmic scale.
+    levels = [np.where(level > 0.0, level, np.nan) for level in levels]
+    seen = np.concatenate([level[np.isfinite(level)] for level in levels])
+    low, high = (float(seen.min()), float(seen.max())) if seen.size else (0.1, 1.0)
+    low, high = (low, high) if low < high else (0.9 * low, 1.1 * low)
     norm = LogNorm(low, high)
     image = None
     for panel, view, level in zip(panels, views, levels, strict=True):
@@ -135,6 +139,9 @@ def _panels(study: Study, views: list[MapView]) -> tuple[Figure, list[Axes]]:
     figure, panels = new_figure(
         8.8, rows * (height + 0.3) + 1.1, rows=rows, columns=columns, share="xy"
     )
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.set(h_pad=0.1)  # pyright: ignore[reportCallIssue] - titles of the first row fit
     for panel in panels[len(views) :]:
         panel.set_visible(False)
     for panel, view in zip(panels, views, strict=False):
@@ -163,6 +170,7 @@ def _image(
         **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
     )
     panel.set(xlim=study.plan.x_extent, ylim=study.plan.y_extent, aspect="equal")
+    panel.set_facecolor("#D9D9D9")  # where nothing is assessed
     for name in routes:
         line = study.drives[name].route.points.T
         panel.plot(*line, color="white", linewidth=2.4)

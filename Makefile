@@ -48,6 +48,7 @@ else
 validate: .venv/.ready-dev
 	$(BIN)/python -m pytest -n 2 --record=build/validation.json tests/validation
 	$(BIN)/python scripts/mutate_inputs.py
+	$(BIN)/python scripts/combine_studies.py
 	$(BIN)/python scripts/kill_at_random.py
 	$(BIN)/python scripts/check_faults.py --json build/faults.json
 	$(BIN)/python scripts/validation_page.py build/validation.json build/faults.json

@@ -84,16 +84,15 @@ def _hints(function: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _check(name: str, value: object, hint: Any) -> None:
-    wanted = [w for w in _options(hint) if w is not type(None)]
-    if value is None and len(wanted) < len(_options(hint)):
+    options = _options(hint)
+    if value is None and type(None) in options:
         return
-    if not wanted or any(_fits(value, w) is not False for w in wanted):
-        for w in wanted:
-            if _fits(value, w):
-                _check_inside(name, value, w)
-                return
-        return
-    raise InputError(f"{name} must be {_words(wanted)}; got {_shown(value)}")
+    wanted = [w for w in options if w is not type(None)]
+    fits = [_fits(value, w) for w in wanted]
+    if True in fits:
+        _check_inside(name, value, wanted[fits.index(True)])
+    elif None not in fits:
+        raise InputError(f"{name} must be {_words(wanted)}; got {_shown(value)}")
 
 
 def _check_inside(name: str, value: Any, wanted: Any) -> None:

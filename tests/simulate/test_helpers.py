@@ -4,11 +4,19 @@ import numpy as np
 import pytest
 
 from models import small_floor
-from trundle.dynamics import Modal, natural_modes
+from trundle.dynamics import Modal, Newmark, natural_modes
 from trundle.errors import InputError
-from trundle.road import Profile, RoadClass
+from trundle.road import Profile, RoadClass, RoughnessBand
 from trundle.route import Abrupt, DriveIn, Ramp, Route, StaticStart, entry_named
-from trundle.simulate import Crossing, contact_forces, point_load_deflection
+from trundle.simulate import (
+    Crossing,
+    Decoupled,
+    contact_force_histories,
+    contact_forces,
+    harmonics,
+    lay_out,
+    point_load_deflection,
+)
 from trundle.structure import beam_bridge
 from trundle.vehicle import quarter_car, sprung_mass
 
@@ -110,8 +118,27 @@ def test_a_level_start_on_a_random_road_dies_out():
     assert (difference[:, :500].max(axis=1) > 100.0 * difference[:, -500:].max(axis=1)).all()
 
 
+def test_exact_statistics_of_a_level_start_are_those_of_its_runs():
+    """Waves and drawn roads begin alike: variances of forces at every time, 4000 runs, 4 sigma."""
+    floor = small_floor(mesh_size=2.0)
+    route = Route.straight((0.0, 3.0), (12.0, 3.0), speed=6.0, name="r")
+    crossing = Crossing(
+        CAR, route, RoadClass("B"), run_in=0.0, start="level", band=RoughnessBand(n_max=2.0)
+    )
+    method = Decoupled(integration=Modal(f_max=30.0, dt=0.01, residual=False))
+    layout = lay_out(floor, crossing, method=method, points={"a": (3.0, 3.0)}, duration=0.5)
+    answers = harmonics(layout, n_waves=800)
+    exact = sum(np.einsum("w,wsc->sc", h.power, np.abs(h.contact_forces) ** 2) for h in answers)
+    forces, mean = contact_force_histories(layout, runs=range(4000), seed=3)
+    drawn = np.mean((forces - mean) ** 2, axis=2)
+    np.testing.assert_allclose(drawn, exact, rtol=4.0 * np.sqrt(2.0 / 4000))
+
+
 def test_other_starts_are_refused():
     route = Route.straight((0.0, 0.0), (50.0, 0.0), speed=10.0, name="r")
+    level = Crossing(CAR, route, RoadClass("B"), start="level")
+    with pytest.raises(InputError, match="choose Modal"):
+        contact_forces(level, integration=Newmark(dt=0.01), n_runs=1, seed=1, duration=1.0)
     with pytest.raises(InputError, match="static start"):
         Crossing(CAR, route, RoadClass("B"), start="level", entry=entry_named("static"))
 

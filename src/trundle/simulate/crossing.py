@@ -53,7 +53,8 @@ class Crossing:
     start : {"equilibrium", "level"}
         How the vehicle begins, before its run-in if it has one: at rest in equilibrium on the
         road under its wheels, or level, as over a road of no height, so that the height of the
-        road there hits it as a step; closed forms of the literature mostly begin so.
+        road there hits it as a step; closed forms of the literature mostly begin so. Level needs
+        an integration by `Modal`.
     """
 
     vehicle: Vehicle

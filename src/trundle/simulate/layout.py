@@ -378,10 +378,14 @@ def _point_rows(floor: Floor, points: Mapping[str, tuple[float, float]]) -> Spar
 
 
 def _check_vehicles(crossings: tuple[Crossing, ...], integration: Integration) -> None:
-    if isinstance(integration, Modal):
-        for crossing in crossings:
-            if problem := step_problem(crossing.vehicle, integration.dt):
-                raise InputError(problem)
+    for crossing in crossings:
+        if not isinstance(integration, Modal):
+            if crossing.start == "level":
+                raise InputError(
+                    'direct integration starts vehicles in equilibrium: choose Modal for "level"'
+                )
+        elif problem := step_problem(crossing.vehicle, integration.dt):
+            raise InputError(problem)
 
 
 def _check_prepared(prepared: PreparedFloor, method: Interaction) -> None:

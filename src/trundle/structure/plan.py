@@ -124,11 +124,12 @@ class FloorPlan:
         """Whether columns stand under or over the floor."""
         return self.column is not None and self.storey_below + self.storey_above > 0.0
 
-    def edge_lines(self) -> dict[str, tuple[int, float]]:
-        """Return across which axis (0 for x, 1 for y) each edge lies, and where [m]."""
-        names = ("x_min", "x_max", "y_min", "y_max")
-        places = (*self.x_extent, *self.y_extent)
-        return {name: (i // 2, float(places[i])) for i, name in enumerate(names)}
+    def held_edges(self) -> dict[str, tuple[int, float]]:
+        """Return edges that cannot move up and down: across which axis (0, 1), and where [m]."""
+        names, places = ("x_min", "x_max", "y_min", "y_max"), (*self.x_extent, *self.y_extent)
+        lines = {name: (i // 2, float(places[i])) for i, name in enumerate(names)}
+        held = ("simple", "pinned", "clamped")
+        return {name: at for name, at in lines.items() if self.edges.get(name) in held}
 
     @property
     def secondary_lines(self) -> Float[Array, " lines"]:

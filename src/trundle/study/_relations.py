@@ -20,7 +20,6 @@ __all__ = ["relation_problems"]
 _MAX_STEPS = 1_000_000
 _MAX_HISTORY = 4e9  # bytes of histories held at once for one cell
 _EDGE = 1e-6  # m
-_HELD = ("simple", "pinned", "clamped")
 _TOP = 80.0  # Hz: bands are assessed up to here
 
 
@@ -125,9 +124,8 @@ def _places(file: StudyFile, plan: FloorPlan) -> Iterator[Problem]:
 
 def _on_held_edges(file: StudyFile, plan: FloorPlan) -> Iterator[Problem]:
     """Give routes that run along an edge that is held: their wheels load nothing."""
-    held = [(e, p) for e, p in plan.edge_lines().items() if plan.edges.get(e, "free") in _HELD]
     for i, section in file.lists.get("route", []):
-        for edge, (axis, position) in held:
+        for edge, (axis, position) in plan.held_edges().items():
             if all(abs(place[axis] - position) < _EDGE for place in section.path):
                 yield Problem(
                     place=f"route[{i + 1}].path",

@@ -160,13 +160,8 @@ def _rough_roads(study: Study) -> Iterator[FitnessWarning]:
 def _still_points(study: Study) -> Iterator[FitnessWarning]:
     """Doubt points on an edge that cannot move."""
     plan = study.plan
-    held = [
-        (edge, *where)
-        for edge, where in plan.edge_lines().items()
-        if plan.edges.get(edge) in ("simple", "pinned", "clamped")
-    ]
     for name, at in study.points.items():
-        for edge, axis, position in held:
+        for edge, (axis, position) in plan.held_edges().items():
             if abs(at[axis] - position) < _ON_EDGE:
                 yield FitnessWarning(
                     subject=f"point {name!r}",

@@ -87,3 +87,12 @@ def test_the_run_in_counts(study):
     path.write_text(text if "1 us" in text else 'duration = "1 us"\n' + text)
     with pytest.raises(StudyError, match="run-in included"):
         load_study(path)
+
+
+def test_two_meshes_ask_too(study, monkeypatch, capsys):
+    monkeypatch.setattr(afford, "memory_there_is", lambda: 1e7)
+    path = study()
+    code, output = run_main(monkeypatch, capsys, "check", path, "--meshes")
+    assert code == 2
+    assert "on half its mesh size: it would take" in output.err
+    assert run_main(monkeypatch, capsys, "check", path, "--meshes", "--json")[0] == 2

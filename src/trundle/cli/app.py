@@ -214,15 +214,18 @@ def check(
         ),
     ] = False,
     as_json: options.Json = False,
+    yes: options.Yes = False,
 ) -> None:
     """Check a study: every mistake at once with its remedy, or a summary and a plan sketch."""
     from trundle.cli import commands
 
+    if meshes and as_json:
+        raise InputError("--meshes prints tables and --json none: give one of them")
     commands.check(study, as_json=as_json)
-    if meshes and not as_json:
+    if meshes:
         from trundle.cli import meshes_command
 
-        meshes_command.compare(study)
+        meshes_command.compare(study, yes=yes)
 
 
 @app.command()

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from trundle.cli.afford import check_affordable
 from trundle.cli.screen import print_table, progress_bar
 from trundle.signals import nominal_frequency
 from trundle.structure import resolved_frequency
 from trundle.study.build import load_study
-from trundle.study.meshes import compare_meshes
+from trundle.study.estimate import estimate_of
+from trundle.study.meshes import compare_meshes, on_two_meshes
 from trundle.units import MICROMETRE_PER_SECOND
 
 __all__ = ["compare"]
 
 
-def compare(path: Path) -> None:
+def compare(path: Path, *, yes: bool = False) -> None:
     """Compute a study's first case on two meshes, and print the levels band by band."""
     study = load_study(path)
+    check_affordable(f"{path} on half its mesh size", estimate_of(on_two_meshes(study)[1]), yes=yes)
     with progress_bar() as tell:
         found = compare_meshes(study, report=tell)
     coarse, fine = found.sizes

@@ -15,7 +15,7 @@ from trundle.study.model import Study
 from trundle.study.progress import Report
 from trundle.study.run import run_study
 
-__all__ = ["MeshComparison", "compare_meshes"]
+__all__ = ["MeshComparison", "compare_meshes", "on_two_meshes"]
 
 _RUNS = 4  # roads are the same on both meshes: their ratio scatters far less than the levels
 
@@ -53,6 +53,30 @@ class MeshComparison:
         return np.divide(coarse, fine, out=np.full_like(coarse, np.nan), where=fine > 0.0)
 
 
+def on_two_meshes(study: Study) -> tuple[Study, Study]:
+    """Return a few runs of a study's first case, on its own mesh and on half of it.
+
+    Parameters
+    ----------
+    study : Study
+        A checked study.
+    """
+    name = study.methods[0].name if study.assessment is None else study.assessment.method
+    label = next(iter(study.roads))
+    small = replace(
+        study,
+        runs=_RUNS,
+        cases=study.cases[:1],
+        roads={label: study.roads[label]},
+        methods=tuple(m for m in study.methods if m.name == name),
+        map=None,
+        printed=(),
+        printed_bounds=(),
+    )
+    half = 0.5 * study.mesh_size
+    return small, replace(small, floor=build_floor(study.plan, mesh_size=half), mesh_size=half)
+
+
 def compare_meshes(study: Study, *, report: Report | None = None) -> MeshComparison:
     """Compute a study's first case on its mesh and on half of it.
 
@@ -69,27 +93,14 @@ def compare_meshes(study: Study, *, report: Report | None = None) -> MeshCompari
         Of the first case on the first road, by the method that carries the verdict, or the first.
     """
     tell = report or (lambda _what, _share: None)
-    name = study.methods[0].name if study.assessment is None else study.assessment.method
-    label = next(iter(study.roads))
-    small = replace(
-        study,
-        runs=_RUNS,
-        cases=study.cases[:1],
-        roads={label: study.roads[label]},
-        methods=tuple(m for m in study.methods if m.name == name),
-        map=None,
-        printed=(),
-        printed_bounds=(),
-    )
-    sizes = (study.mesh_size, 0.5 * study.mesh_size)
+    both = on_two_meshes(study)
     spectra: list[BandSpectra] = []
     whole = np.ones(len(mid_band_frequencies()), dtype=bool)
     # the finer mesh has four times the dofs, and takes about five times as long
-    for size, start, share in zip(sizes, (0.0, 0.17), (0.17, 0.83), strict=True):
-        floor = study.floor if size == study.mesh_size else build_floor(study.plan, mesh_size=size)
+    for one, start, share in zip(both, (0.0, 0.17), (0.17, 0.83), strict=True):
         result = run_study(
-            replace(small, floor=floor, mesh_size=size),
-            report=lambda what, done, a=start, b=share, s=size: tell(
+            one,
+            report=lambda what, done, a=start, b=share, s=one.mesh_size: tell(
                 f"{s:g} m mesh: {what}", a + b * done
             ),
         )
@@ -97,10 +108,10 @@ def compare_meshes(study: Study, *, report: Report | None = None) -> MeshCompari
         spectra.append(cell.spectra)
         whole &= cell.spectra.resolved & cell.coverage.excites(cell.spectra.mid_band)
     return MeshComparison(
-        sizes=sizes,
-        case=small.cases[0].name,
-        road=label,
-        method=name,
+        sizes=(both[0].mesh_size, both[1].mesh_size),
+        case=both[0].cases[0].name,
+        road=next(iter(both[0].roads)),
+        method=both[0].methods[0].name,
         points=spectra[0].point_names,
         bands=spectra[0].mid_band[whole],
         levels=np.sqrt([np.mean(s.values[:, :, whole] ** 2, axis=0) for s in spectra]),

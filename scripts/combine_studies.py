@@ -21,6 +21,8 @@ import traceback
 import warnings
 from pathlib import Path
 
+from study_texts import RAYLEIGH, SMALL
+
 from trundle.cli.result_tables import print_result
 from trundle.errors import StudyError, TrundleError
 from trundle.report import write_report
@@ -29,9 +31,7 @@ from trundle.study.results_folder import new_results_folder
 from trundle.study.run import run_study
 from trundle.study.store import write_results
 
-ROOT = Path(__file__).resolve().parent.parent
 RATIO = '{ ratio = "3 %" }'
-RAYLEIGH = '{ rayleigh_alpha = "0.8 1/s", rayleigh_beta = "0.001 s" }'
 PLANAR = """
 [vehicle.planar]
 kind = "planar"
@@ -58,8 +58,7 @@ CURVES = ("VC-A", "VC-C", "VC-E", "office", "operating-theatre", "workshop")
 
 def floor(rng: random.Random) -> str:
     """Return the head of a study: runs, duration, floor and edges."""
-    text = (ROOT / "scripts" / "small_study.toml").read_text("utf-8")
-    text = text[: text.index("[vehicle.truck]")]
+    text = SMALL[: SMALL.index("[vehicle.truck]")]
     text = text.replace("runs = 2", f"runs = {rng.choice([1, 2, 3, 17])}")
     text = text.replace('duration = "4 s"', rng.choice(["", "", 'duration = "15 s"']))
     if rng.random() < 0.3:

@@ -19,19 +19,7 @@ import time
 from pathlib import Path
 
 import psutil
-
-ROOT = Path(__file__).resolve().parent.parent
-MORE = """
-[[road]]
-class = "C"
-
-[[method]]
-name = "direct"
-interaction = "coupled"
-integration = "newmark"
-dt = "5 ms"
-damping = { rayleigh_alpha = "0.8 1/s", rayleigh_beta = "0.001 s" }
-"""
+from study_texts import DIRECT, ROAD_C, SMALL
 
 
 def start(folder: Path, *options: str) -> subprocess.Popen[bytes]:
@@ -94,7 +82,7 @@ def main() -> int:
     parser.add_argument("--kills", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     asked = parser.parse_args()
-    text = (ROOT / "scripts" / "small_study.toml").read_text("utf-8") + MORE
+    text = SMALL + ROAD_C + DIRECT
     text = text.replace("runs = 2", "runs = 60").replace('"4 s"', '"8 s"')
     with tempfile.TemporaryDirectory(prefix="trundle-kills-") as name:
         folders = [Path(name) / part for part in ("whole", "disturbed")]

@@ -18,6 +18,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+from study_texts import DIRECT, RAYLEIGH, ROAD_C, SMALL
+
 ROOT = Path(__file__).resolve().parent.parent
 TRAFFIC = """
 [[route]]
@@ -37,11 +39,9 @@ kind = "car_bmw_320i"
 name = "stage"
 at = ["8 m", "4 m"]
 isolator = { frequency = "2 Hz", damping = "10 %" }
-
-[[road]]
-class = "C"
 """
-METHODS = """
+METHODS = (
+    """
 [[method]]
 name = "decoupled"
 interaction = "decoupled"
@@ -51,20 +51,15 @@ damping = { ratio = "3 %" }
 entry = "ramp"
 
 [[method]]
-name = "direct"
-interaction = "coupled"
-integration = "newmark"
-dt = "5 ms"
-damping = { rayleigh_alpha = "0.8 1/s", rayleigh_beta = "0.001 s" }
-
-[[method]]
 name = "direct, decoupled"
 interaction = "decoupled"
 integration = "newmark"
 dt = "5 ms"
-damping = { rayleigh_alpha = "0.8 1/s", rayleigh_beta = "0.001 s" }
+damping = RAYLEIGH
 contact = "hat"
-"""
+""".replace("RAYLEIGH", RAYLEIGH)
+    + DIRECT
+)
 MAP = """
 [map]
 runs = 4
@@ -77,15 +72,13 @@ FILES = ("summary.json", "summary.csv", "verdicts.csv")
 
 def studies(*, demo: bool) -> dict[str, str]:
     """Return the text of each study by its name."""
-    small = (
-        (ROOT / "scripts" / "small_study.toml").read_text("utf-8").replace("runs = 2", "runs = 9")
-    )
+    small = SMALL.replace("runs = 2", "runs = 9")
     short, long = small.replace('"4 s"', '"8 s"'), small.replace('duration = "4 s"\n', "")
     curves = '["VC-A", "VC-C", "office", "operating-theatre"]\npercentile = 90.0'
     found = {
         "methods": short + METHODS,
-        "traffic": long.replace('["VC-A"]', curves) + TRAFFIC,
-        "map": long.replace('"1.5 m"', '"1 m"') + TRAFFIC + MAP,
+        "traffic": long.replace('["VC-A"]', curves) + TRAFFIC + ROAD_C,
+        "map": long.replace('"1.5 m"', '"1 m"') + TRAFFIC + ROAD_C + MAP,
     }
     if demo:
         found["demo"] = (ROOT / "examples" / "paper" / "study.toml").read_text("utf-8")

@@ -75,7 +75,7 @@ def _print_exact(result: StudyResult) -> None:
                 f"{row.peak[0]:.3g}",
                 f"{row.sampled_peak[0]:.3g}",
                 f"{row.peak[1]:.3g}",
-                f"{row.sampled_peak[1]:.3g} ({row.interval[0]:.3g}-{row.interval[1]:.3g})",
+                f"{row.sampled_peak[1]:.3g} ({row.between})",
             )
             for row in rows
         ),

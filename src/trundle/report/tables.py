@@ -77,6 +77,14 @@ class ExactRow:
     interval: tuple[float, float]
     quadrature_error: float
 
+    @property
+    def between(self) -> str:
+        """Write the interval; few runs leave it open."""
+        low, high = self.interval
+        if np.isfinite(low) and np.isfinite(high):
+            return f"{written(low)}-{written(high)}"
+        return f"above {written(low)}" if np.isfinite(low) else "too few runs for limits"
+
 
 @dataclass(frozen=True, kw_only=True)
 class TruncationRow:

@@ -89,3 +89,14 @@ def test_names_of_files_do_not_steer_the_terminal(tmp_path, record):
     code, more, err = trundle("assess", hostile.with_name("\x1b[2J.csv"), cwd=tmp_path)
     assert code == 2
     assert "\x1b" not in out + more + err
+
+
+def test_a_record_without_motion_is_not_assessed_and_says_why(tmp_path, record):
+    """A level of 1e-17 m/s is below every limit, and no sensor's."""
+    t = np.arange(4000) / 200.0
+    table = np.column_stack([t, 1e-15 * np.sin(60.0 * t)])
+    np.savetxt(record, table, delimiter=",", header="time [s],z [m/s2]", comments="")
+    code, out, _ = trundle("assess", record, "--criteria", "VC-E", cwd=tmp_path)
+    assert code == 0
+    assert "not assessed: nothing moves there" in out
+    assert " pass " not in out

@@ -144,5 +144,8 @@ def _print(result: RecordResult) -> None:
         ),
         text_columns=4,
     )
+    reasons = (r for v in result.verdicts if v.status == "not assessed" for r in v.reasons)
+    for reason in dict.fromkeys(reasons):
+        print(f"not assessed: {reason}")
     for warning in result.warnings:
         print(f"warning: {warning}")

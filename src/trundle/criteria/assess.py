@@ -265,8 +265,7 @@ def _still(values: Array) -> tuple[str, ...]:
     if not values.size or float(np.abs(values).max()) > STILL:
         return ()
     return (
-        "nothing moves there: the point or the route stands on an edge or support that is held, or "
-        "a unit is wrong",
+        "nothing moves there: an edge or a support holds it, a sensor is dead, or a unit is wrong",
     )
 
 

@@ -14,8 +14,8 @@ import time
 from importlib import resources
 from pathlib import Path
 
-from trundle.study.build import load_study
-from trundle.study.estimate import estimate_of
+from trundle.run.estimate import estimate_of
+from trundle.study_file.build import load_study
 
 VARIANTS: dict[str, list[tuple[str, str]]] = {
     "template": [],
@@ -59,7 +59,7 @@ def measure(study: Path, folder: Path) -> tuple[float, float]:
 def main() -> None:
     """Print estimate, measurement and ratio of every variant, JSON as the last line."""
     os.environ["TRUNDLE_CACHE"] = ""
-    template = resources.files("trundle.study").joinpath("template.toml").read_text("utf-8")
+    template = resources.files("trundle.study_file").joinpath("template.toml").read_text("utf-8")
     found = {}
     with tempfile.TemporaryDirectory() as place:
         for name, changes in VARIANTS.items():

@@ -16,6 +16,7 @@ from settings import dgemm_rate, rear_crossing
 
 import trundle as tr
 from trundle.response import floor_map
+from trundle.run.mode_cache import modes_of
 from trundle.simulate import (
     Coupled,
     Modal,
@@ -24,7 +25,6 @@ from trundle.simulate import (
     lay_out_places,
     prepare,
 )
-from trundle.study.mode_cache import modes_of
 
 
 def main() -> None:

@@ -13,8 +13,8 @@ import time
 
 import trundle as tr
 from trundle.response import join, reduce_rougher
+from trundle.run.mode_cache import modes_of
 from trundle.simulate import Coupled, Crossing, Modal, batches, lay_out, mean_response, prepare
-from trundle.study.mode_cache import modes_of
 
 SIZES = (100, 1000, 10_000, 100_000)
 

@@ -5,8 +5,8 @@ import time
 import numpy as np
 
 import trundle as tr
+from trundle.run.mode_cache import modes_of
 from trundle.simulate import Coupled, Crossing, Modal, lay_out, prepare
-from trundle.study.mode_cache import modes_of
 
 POINT = (32.5, 62.5)
 

@@ -26,10 +26,10 @@ from study_texts import RAYLEIGH, SMALL
 from trundle.cli.result_tables import print_result
 from trundle.errors import StudyError, TrundleError
 from trundle.report import write_report
-from trundle.study.build import load_study
-from trundle.study.results_folder import new_results_folder
-from trundle.study.run import run_study
-from trundle.study.store import write_results
+from trundle.results.results_folder import new_results_folder
+from trundle.results.store import write_results
+from trundle.run.whole_study import run_study
+from trundle.study_file.build import load_study
 
 RATIO = '{ ratio = "3 %" }'
 PLANAR = """

@@ -32,9 +32,9 @@ from scipy.io import wavfile
 from trundle.criteria import VC
 from trundle.errors import TrundleError
 from trundle.records import RecordOptions, read_record
-from trundle.study import load_study
-from trundle.study.assess_record import assess_record
-from trundle.study.run import run_study
+from trundle.records.assess import assess_record
+from trundle.run.whole_study import run_study
+from trundle.study_file.build import load_study
 
 ROOT = Path(__file__).resolve().parent.parent
 SECONDS, BYTES = 60, 4_000_000_000

@@ -1,6 +1,7 @@
 """Switch on the run-time check of array shapes, and keep numerics on one thread a worker."""
 
 import os
+import sys
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
@@ -25,3 +26,19 @@ def pytest_configure(config: pytest.Config) -> None:
 
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(Collector(config.getoption("--record")))
+
+
+@pytest.fixture
+def trundle(monkeypatch):
+    """Return what runs the command in this process, and returns its exit code."""
+    from trundle.cli.app import main
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["trundle", *map(str, arguments)])
+        try:
+            main()
+        except SystemExit as stop:
+            return stop.code or 0
+        return 0
+
+    return run

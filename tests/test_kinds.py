@@ -7,9 +7,9 @@ from models import small_floor
 from trundle.criteria import VC, assess, find_criterion
 from trundle.errors import InputError
 from trundle.route import Route
+from trundle.run.whole_study import run_study
 from trundle.simulate import Coupled, Crossing, Decoupled, ensemble, lay_out, prepare
 from trundle.structure import build_floor
-from trundle.study.run import run_study
 from trundle.vehicle import build_vehicle, library_vehicle
 
 TRUCK = library_vehicle("car_bmw_320i")

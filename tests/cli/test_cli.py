@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from trundle.study import load_study
+from trundle.study_file.build import load_study
 
 
 def trundle(*arguments, **options):

@@ -8,7 +8,7 @@ import pytest
 
 from trundle.route import Abrupt, Ramp
 from trundle.simulate import ensemble, prepare
-from trundle.study import load_study
+from trundle.study_file.build import load_study
 
 FOLDER = Path(__file__).parents[2] / "examples" / "paper"
 

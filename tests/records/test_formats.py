@@ -15,7 +15,7 @@ from scipy.io import wavfile
 from trundle.criteria import find_criterion
 from trundle.errors import InputError
 from trundle.records import RecordOptions, read_record
-from trundle.study.assess_record import assess_record
+from trundle.records.assess import assess_record
 
 FS, N = 400.0, 4000
 T = np.arange(N) / FS

@@ -9,14 +9,14 @@ import sys
 
 import pytest
 
+from trundle.records.assess import assess_record
 from trundle.report import write_record_report, write_report
+from trundle.run.whole_study import run_study
 from trundle.signals import Record
-from trundle.study import load_study
-from trundle.study.assess_record import assess_record
-from trundle.study.run import run_study
+from trundle.study_file.build import load_study
 
 sys.path.append(os.path.join(os.path.dirname(__file__), "..", "study"))
-from test_maps import LONG, MAP
+from studies import LONG, MAP
 
 BROWSER = next(
     filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), ""

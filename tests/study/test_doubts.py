@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from trundle.study import load_study
+from trundle.run.meshes import compare_meshes
 from trundle.study.doubts import study_doubts
-from trundle.study.meshes import compare_meshes
+from trundle.study_file.build import load_study
 
 ON_WALLS = """
 title = "Composite floor on two walls"

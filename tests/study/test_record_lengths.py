@@ -2,12 +2,12 @@
 
 import numpy as np
 import xarray as xr
-from test_messages import GOOD
 
-from trundle.study.build import load_study
-from trundle.study.cells import CellKey
-from trundle.study.run import run_study
-from trundle.study.store import write_results
+from studies import GOOD
+from trundle.results.cells import CellKey
+from trundle.results.store import write_results
+from trundle.run.whole_study import run_study
+from trundle.study_file.build import load_study
 
 SLOW = """
 [[route]]

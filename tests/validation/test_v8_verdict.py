@@ -5,6 +5,7 @@ import pytest
 
 from models import small_floor
 from trundle.criteria import VC
+from trundle.records.assess import assess_record
 from trundle.response import floor_map, reduce_runs
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import DriveIn, Route
@@ -19,7 +20,6 @@ from trundle.simulate import (
     lay_out_places,
     prepare,
 )
-from trundle.study.assess_record import assess_record
 from trundle.vehicle import container_truck_40ft
 
 CASE = "V8 verdict"

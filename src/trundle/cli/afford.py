@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from trundle.errors import InputError
-from trundle.study.estimate import Estimate, memory_there_is
+from trundle.run.estimate import Estimate, memory_there_is
 
 __all__ = ["check_affordable", "what_is_dear"]
 

@@ -13,11 +13,11 @@ from trundle.cli.sketch import plan_sketch
 from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
 from trundle.dynamics import natural_modes
 from trundle.errors import InputError
+from trundle.run.estimate import estimate_of
 from trundle.study.assumptions import early_end_warnings
-from trundle.study.build import load_study
 from trundle.study.doubts import study_doubts
-from trundle.study.estimate import estimate_of
 from trundle.study.model import Study
+from trundle.study_file.build import load_study
 from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
 from trundle.vehicle import GRAVITY, VEHICLES, Vehicle
 
@@ -79,7 +79,7 @@ def _checked(study: Study) -> dict[str, Any]:
 
 def new(path: Path) -> None:
     """Write the template study."""
-    template = resources.files("trundle.study").joinpath("template.toml").read_text("utf-8")
+    template = resources.files("trundle.study_file").joinpath("template.toml").read_text("utf-8")
     try:
         if path.exists():
             raise InputError(f"{path}: this file exists; choose another name")

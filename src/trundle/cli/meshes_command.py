@@ -6,11 +6,11 @@ from pathlib import Path
 
 from trundle.cli.afford import check_affordable
 from trundle.cli.screen import print_table, progress_bar
+from trundle.run.estimate import estimate_of
+from trundle.run.meshes import compare_meshes, on_two_meshes
 from trundle.signals import nominal_frequency
 from trundle.structure import resolved_frequency
-from trundle.study.build import load_study
-from trundle.study.estimate import estimate_of
-from trundle.study.meshes import compare_meshes, on_two_meshes
+from trundle.study_file.build import load_study
 from trundle.units import MICROMETRE_PER_SECOND
 
 __all__ = ["compare"]

@@ -12,15 +12,15 @@ from trundle.cli.afford import check_affordable
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
+from trundle.mitigate.changes import Change, each_change, every_combination
+from trundle.mitigate.estimate import estimate_of_changes
+from trundle.mitigate.mitigation import check_speeds, try_changes
+from trundle.mitigate.sweep import Sweep
 from trundle.report import PARTLY, UNKNOWN, mitigation_rows, write_mitigation_report
+from trundle.results.results_folder import check_target, new_results_folder
 from trundle.road import CLASS_NAMES
 from trundle.signals import Isolator
-from trundle.study.build import load_study
-from trundle.study.changes import Change, each_change, every_combination
-from trundle.study.estimate import estimate_of_changes
-from trundle.study.mitigation import check_speeds, try_changes
-from trundle.study.results_folder import check_target, new_results_folder
-from trundle.study.sweep import Sweep
+from trundle.study_file.build import load_study
 from trundle.units import KMH, to_si
 from trundle.vehicle import library_vehicle
 

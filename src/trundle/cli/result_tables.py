@@ -15,7 +15,7 @@ from trundle.report import (
     verdict_matrix,
     written,
 )
-from trundle.study.run import StudyResult
+from trundle.results.study_result import StudyResult
 
 __all__ = ["print_result"]
 

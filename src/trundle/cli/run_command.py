@@ -14,14 +14,14 @@ from trundle.cli.screen import progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
 from trundle.report import write_report
-from trundle.study.build import load_study
+from trundle.results.results_folder import check_target, new_results_folder
+from trundle.results.store import write_results
+from trundle.run.estimate import estimate_of
+from trundle.run.scale_out import Cluster, cluster_at, local_cluster
+from trundle.run.unfinished import unfinished_of
+from trundle.run.whole_study import run_study
 from trundle.study.doubts import study_doubts
-from trundle.study.estimate import estimate_of
-from trundle.study.results_folder import check_target, new_results_folder
-from trundle.study.run import run_study
-from trundle.study.scale_out import Cluster, cluster_at, local_cluster
-from trundle.study.store import write_results
-from trundle.study.unfinished import unfinished_of
+from trundle.study_file.build import load_study
 
 __all__ = ["run"]
 

@@ -6,6 +6,7 @@ import json
 import sys
 from typing import Any, Literal, TypeAlias
 
+from trundle._json import plain
 from trundle.errors import InputError, StudyError
 
 __all__ = ["Show", "error_as_json", "say_json", "show_of", "warn"]
@@ -22,8 +23,6 @@ def show_of(*, as_json: bool, quiet: bool) -> Show:
 
 def say_json(value: object) -> None:
     """Print a value as JSON, which has no not-a-number."""
-    from trundle.study.datasets import plain  # loads xarray, which nothing else here needs
-
     print(json.dumps(plain(value), indent=1, allow_nan=False))
 
 

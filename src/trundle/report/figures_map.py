@@ -14,7 +14,7 @@ from matplotlib.ticker import StrMethodFormatter
 from trundle._typing import Array
 from trundle.report.canvas import COLOURS, new_figure
 from trundle.report.map_data import MapView, class_ranks, class_scale
-from trundle.study.maps import MapPlan
+from trundle.study.map_plan import MapPlan
 from trundle.study.model import Study
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 

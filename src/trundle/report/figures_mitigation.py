@@ -13,8 +13,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from trundle.mitigate.sweep import Outcome, Sweep
 from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
-from trundle.study.sweep import Outcome, Sweep
 from trundle.units import KMH
 
 __all__ = ["NONE", "UNKNOWN", "class_matrix_figure", "speed_figure", "strictest"]

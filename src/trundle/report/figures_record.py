@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from trundle.records.assess import RecordResult
 from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
 from trundle.report.figures_response import draw_criterion, rule_name
 from trundle.signals import running_rms
-from trundle.study.assess_record import RecordResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = ["record_history_figure", "record_spectra_figure"]

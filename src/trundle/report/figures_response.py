@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from trundle.criteria import Criterion
 from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
 from trundle.report.tables import ComparisonRow
+from trundle.results.cells import CellKey
+from trundle.results.study_result import StudyResult
 from trundle.signals import Averaging
-from trundle.study.cells import CellKey
-from trundle.study.run import StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = [

@@ -12,10 +12,10 @@ from matplotlib.colors import to_hex
 
 from trundle._typing import Array
 from trundle.criteria import ClassMap, envelope_of
+from trundle.results.map_datasets import single_maps
+from trundle.results.maps import StudyMap
+from trundle.results.study_result import StudyResult
 from trundle.signals import nominal_frequency
-from trundle.study.map_datasets import single_maps
-from trundle.study.maps import StudyMap
-from trundle.study.run import StudyResult
 from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 
 __all__ = ["MapView", "class_ranks", "class_scale", "map_payload", "map_views"]

@@ -9,10 +9,10 @@ from matplotlib import rc_context
 
 from trundle import __version__
 from trundle._csv import write_csv
+from trundle.mitigate.sweep import Sweep
 from trundle.report.canvas import STYLE, Picture, save
 from trundle.report.figures_mitigation import class_matrix_figure, speed_figure, strictest
 from trundle.report.html import embedded, template
-from trundle.study.sweep import Sweep
 from trundle.units import KMH
 
 __all__ = ["PARTLY", "mitigation_rows", "write_mitigation_report"]

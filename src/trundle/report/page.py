@@ -32,12 +32,12 @@ from trundle.report.tables import (
     truncation_rows,
     verdict_matrix,
 )
+from trundle.results.cells import CellKey
+from trundle.results.maps import MapKey
+from trundle.results.store import provenance
+from trundle.results.study_result import StudyResult, positions_at, wheels_at
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import self_weight_deflection
-from trundle.study.cells import CellKey
-from trundle.study.maps import MapKey
-from trundle.study.run import StudyResult, positions_at, wheels_at
-from trundle.study.store import provenance
 from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 
 __all__ = ["write_report"]

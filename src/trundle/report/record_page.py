@@ -11,12 +11,12 @@ from matplotlib import rc_context
 
 from trundle import __version__
 from trundle._csv import write_csv
+from trundle._json import plain
+from trundle.records.assess import RecordResult
 from trundle.report import figures_record
 from trundle.report.canvas import STYLE, Picture, save
 from trundle.report.html import embedded, template
 from trundle.signals import crest_factor, nominal_frequency
-from trundle.study.assess_record import RecordResult
-from trundle.study.datasets import plain
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = ["record_rows", "write_record_report"]

@@ -9,10 +9,10 @@ import numpy as np
 from trundle.criteria import Verdict
 from trundle.dynamics import Modal
 from trundle.response import percentile_interval, percentile_rank, upper_bounds
+from trundle.results.cells import CellKey
+from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, class_limits
-from trundle.study.cells import CellKey
 from trundle.study.model import PrintedBound, Study
-from trundle.study.run import StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = [

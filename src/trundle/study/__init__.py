@@ -1,6 +1,6 @@
-"""Read studies, plan and run them, and store what they give."""
+"""Hold whole studies: what is run, on what, and what it is held against."""
 
-from trundle.study.build import load_study
-from trundle.study.model import Case, MethodPlan, Study
+from trundle.study.map_plan import MapPlan
+from trundle.study.model import Assessment, Case, Drive, MethodPlan, Study
 
-__all__ = ["Case", "MethodPlan", "Study", "load_study"]
+__all__ = ["Assessment", "Case", "Drive", "MapPlan", "MethodPlan", "Study"]

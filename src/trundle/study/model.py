@@ -13,8 +13,7 @@ from trundle.route import ConstantSpeed, Entry, Route
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.structure import Floor, FloorPlan
-from trundle.study import schema
-from trundle.study.maps import MapPlan
+from trundle.study.map_plan import MapPlan
 from trundle.vehicle import Vehicle
 
 __all__ = [
@@ -258,11 +257,3 @@ class Study:
         speed = float(drive.route.law.speed(0.0))
         limit = 0.5 / (speed * method.interaction.integration.dt)
         return replace(band, n_max=min(band.n_max, limit))
-
-
-def road_label(section: schema.RoadSection) -> str:
-    """Return the short label of a road: the class letter, with its level if not the mean."""
-    label = section.class_
-    if section.level != "geometric_mean":
-        label += f" {section.level}"
-    return label if section.waviness == 2.0 else f"{label} w={section.waviness:g}"

@@ -1,0 +1,1 @@
+"""Change a study, and hold what comes out against its criteria."""

@@ -1,0 +1,253 @@
+"""Cut a study into jobs, and jobs into parts that can be computed anywhere, in any order."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trundle.criteria import spectra_asked_for
+from trundle.dynamics import Modal
+from trundle.response import (
+    SpectrumQuantity,
+    behind_isolators,
+    exact_statistics,
+    reduce_rougher,
+)
+from trundle.results.pieces import Piece, exact_piece, runs_piece
+from trundle.run.map_part import map_piece
+from trundle.signals import Averaging, Isolation
+from trundle.simulate import (
+    Crossing,
+    Layout,
+    PlaceResponses,
+    PreparedFloor,
+    harmonics,
+    lay_out,
+    lay_out_places,
+    runs_with_mean,
+    truncation_change,
+)
+from trundle.simulate.ensemble import runs_at_once
+from trundle.study.map_plan import MapPlan
+from trundle.study.model import Case, MethodPlan, Study
+
+__all__ = ["Job", "LaidOut", "compute", "lay_out_job", "plan_jobs"]
+
+Progress = Callable[[float], None]
+
+_WAVES = 400  # shared among the roads of a case: 800 runs' worth; fewer miss sharp answers
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Job:
+    """Hold what shares a layout: one case by one method on roads of one waviness.
+
+    Roads of one waviness differ by a factor alone, and the system is linear; so they share one
+    ensemble, whose response without roughness is subtracted, scaled about, and added again.
+
+    Attributes
+    ----------
+    name : str
+        Name of the job, unique in the study and fit for a file.
+    case : Case
+        What drives.
+    method : MethodPlan
+        By what method.
+    crossings : tuple of Crossing
+        The crossings on the first of the roads.
+    factors : mapping of str to float
+        How many times rougher each road is than the first.
+    parts : tuple of range
+        Numbers of the runs of each part; the last part after them are the exact statistics.
+    n_waves : int
+        Waves of each road for exact statistics, 0 for none.
+    points : mapping of str to (x, y)
+        Where the response is read [m].
+    duration : float
+        Length of the record [s].
+    seed : int
+        Seed of all roads.
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Averaging rule of band levels.
+    quantities : tuple of SpectrumQuantity
+        Spectra that the criteria ask for.
+    isolations : mapping of str to Isolation
+        What stands between floor and tool at some of the points.
+    map : MapPlan or None
+        What is mapped over the floor, by the method that carries the verdict.
+    speed : float or None
+        Speed of every vehicle if it is not the study's [m/s]; such a job leaves a map alone.
+    """
+
+    name: str
+    case: Case
+    method: MethodPlan
+    crossings: tuple[Crossing, ...]
+    factors: Mapping[str, float]
+    parts: tuple[range, ...]
+    n_waves: int
+    points: Mapping[str, tuple[float, float]]
+    duration: float
+    seed: int
+    averaging: Averaging
+    quantities: tuple[SpectrumQuantity, ...]
+    isolations: Mapping[str, Isolation]
+    map: MapPlan | None
+    speed: float | None
+
+    @property
+    def pieces(self) -> tuple[str, ...]:
+        """One name for what each part leaves, unique in the study."""
+        names = [f"{self.name}-runs{i:04d}" for i in range(len(self.parts))]
+        names += [f"{self.name}-exact"] if self.n_waves else []
+        names += [f"{self.name}-map"] if self.map is not None else []
+        return tuple(names)
+
+    @property
+    def modal(self) -> bool:
+        """Whether the floor is stepped in its modes."""
+        return isinstance(self.method.interaction.integration, Modal)
+
+
+def plan_jobs(study: Study) -> tuple[Job, ...]:
+    """Return the jobs of a study, in the order of its methods and cases."""
+    return tuple(
+        job
+        for i, method in enumerate(study.methods)
+        for j, case in enumerate(study.cases)
+        for k, roads in enumerate(_groups(study))
+        for job in _jobs(study, f"method{i}-case{j}-roads{k}", (case, method), roads)
+    )
+
+
+def _groups(study: Study) -> list[list[str]]:
+    """Return roads of one waviness together."""
+    groups: dict[float, list[str]] = {}
+    for name, road in study.roads.items():
+        groups.setdefault(road.waviness, []).append(name)
+    return list(groups.values())
+
+
+def _jobs(
+    study: Study, name: str, what: tuple[Case, MethodPlan], roads: list[str]
+) -> Iterator[Job]:
+    """Give the job at the study's own speeds, and one for each further speed that is mapped."""
+    case, method = what
+    crossings = study.crossings(case, roads[0], method)
+    first = study.roads[roads[0]].roughness
+    length = study.record_length(crossings)
+    dt = method.interaction.integration.dt
+    size = runs_at_once(crossings, dt, length, len(study.points))
+    n_parts = -(-study.runs // size)
+    edges = np.linspace(0, study.runs, n_parts + 1).astype(int)
+    modal = isinstance(method.interaction.integration, Modal)
+    job = Job(
+        name=name,
+        case=case,
+        method=method,
+        crossings=crossings,
+        factors={name: float(np.sqrt(study.roads[name].roughness / first)) for name in roads},
+        parts=tuple(range(a, b) for a, b in itertools.pairwise(edges)),
+        n_waves=max(2, _WAVES // len(crossings)) if modal else 0,
+        points=study.points,
+        duration=length,
+        seed=study.seed,
+        averaging=study.assessment.averaging if study.assessment else "max_1s",
+        quantities=spectra_asked_for(study.assessment.criteria) if study.assessment else (),
+        isolations=study.isolations,
+        map=_map(study, case, method),
+        speed=None,
+    )
+    yield job
+    for i, speed in enumerate(job.map.speeds if job.map is not None else ()):
+        there = study.at_speed(speed).crossings(case, roads[0], method)
+        yield replace(
+            job,
+            name=f"{name}-speed{i}",
+            crossings=there,
+            parts=(),
+            n_waves=0,
+            duration=study.long_enough(there),
+            speed=speed,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LaidOut:
+    """Hold what all parts of a job share: its layout, and the way to the places of its map."""
+
+    layout: Layout
+    places: PlaceResponses | None
+
+
+def _map(study: Study, case: Case, method: MethodPlan) -> MapPlan | None:
+    """Return what is mapped of a case: by the assessed method, and of traffic if asked for."""
+    plan, assessment = study.map, study.assessment
+    if plan is None or assessment is None or assessment.method != method.name:
+        return None
+    return plan if plan.traffic or len(case.routes) == 1 else None
+
+
+def lay_out_job(job: Job, floor: PreparedFloor) -> LaidOut:
+    """Lay out what all parts of a job share."""
+    layout = lay_out(
+        floor,
+        job.crossings,
+        method=job.method.interaction,
+        points=job.points,
+        duration=job.duration,
+    )
+    places = None if job.map is None else lay_out_places(floor, layout, job.map.places)
+    return LaidOut(layout=layout, places=places)
+
+
+def compute(job: Job, laid_out: LaidOut, part: int, progress: Progress | None = None) -> Piece:
+    """Compute one part of a job; the same bits wherever and whenever.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    laid_out : LaidOut
+        What its parts share.
+    part : int
+        Which of its pieces.
+    progress : callable, optional
+        Told the share done.
+    """
+    layout, factors = laid_out.layout, list(job.factors.values())
+    if part < len(job.parts):
+        return _runs(job, layout, part, progress)
+    if job.pieces[part].endswith("-map"):
+        assert job.map is not None  # its piece is named
+        assert laid_out.places is not None  # laid out with it
+        return map_piece(job.map, layout, laid_out.places, factors, job.seed, progress=progress)
+    answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
+    answers = (behind_isolators(answer, job.isolations) for answer in answers)
+    exact = exact_statistics(answers, f_max=layout.f_max)
+    return exact_piece(exact, factors)
+
+
+def _runs(job: Job, layout: Layout, part: int, progress: Progress | None) -> Piece:
+    """Run some roads, and keep what is reported of them."""
+    factors = list(job.factors.values())
+    runs, mean = runs_with_mean(
+        layout, runs=job.parts[part], seed=job.seed, progress=_part(progress, 0.8)
+    )
+    first = part == 0 and job.modal
+    change = truncation_change(layout, runs, job.parts[0]) if first else None
+    runs = behind_isolators(runs, job.isolations)
+    mean = behind_isolators(mean, job.isolations)
+    reduced = reduce_rougher(
+        runs, mean, factors, averaging=job.averaging, quantities=job.quantities
+    )
+    history = runs.part(slice(0, 1)) if part == 0 else None
+    histories = [] if history is None else [history.rougher(mean, f) for f in factors]
+    return runs_piece(runs, reduced, histories, truncation=change)
+
+
+def _part(progress: Progress | None, length: float) -> Progress | None:
+    return None if progress is None else lambda share: progress(length * share)

@@ -1,0 +1,1 @@
+"""Read study files: TOML to a study, or to every mistake in it."""

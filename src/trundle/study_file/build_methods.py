@@ -1,0 +1,145 @@
+"""Turn the sections that name methods into methods: interaction, integration, damping, entry."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
+from trundle.errors import Problem
+from trundle.road import RoughnessBand
+from trundle.route import Hat, Hermite, entry_named
+from trundle.simulate import Coupled, Decoupled, Integration
+from trundle.study.model import MethodPlan
+from trundle.study_file._attempt import attempt
+from trundle.study_file.read import StudyFile
+from trundle.study_file.schema import MethodSection
+
+__all__ = ["methods_of"]
+
+
+def methods_of(
+    file: StudyFile, mesh_size: float, band: RoughnessBand | None
+) -> tuple[dict[str, MethodPlan], list[Problem]]:
+    """Return the methods of a study by name, and what is wrong with them.
+
+    Parameters
+    ----------
+    file : StudyFile
+        Its sections.
+    mesh_size : float
+        Of the floor [m]: the length of a ramp unless another is given.
+    band : RoughnessBand, optional
+        The waves of the study; methods may name their own.
+    """
+    methods: dict[str, MethodPlan] = {}
+    problems: list[Problem] = []
+    for i, section in file.lists.get("method", []):
+        place = f"method[{i + 1}]"
+        damping, integration = _damping(section, place), _integration(section, place)
+        own = None if band is None else _own_band(section, place, band)
+        found = [one for one in (damping, integration, own) if isinstance(one, Problem)]
+        if isinstance(damping, ModalRatio) and section.integration == "newmark":
+            found.append(_ratio_with_newmark(place))
+        if section.entry == "abrupt" and section.entry_length is not None:
+            found.append(_length_of_nothing(place, section.entry_length))
+        problems += found
+        if (
+            isinstance(damping, Problem)
+            or isinstance(integration, Problem)
+            or isinstance(own, Problem)
+            or found
+        ):
+            continue
+        kind = Coupled if section.interaction == "coupled" else Decoupled
+        contact = Hat() if section.contact == "hat" else Hermite()
+        default = {"drive_in": None, "abrupt": None}.get(section.entry, mesh_size)
+        methods[section.name] = MethodPlan(
+            name=section.name,
+            interaction=kind(integration=integration, damping=damping, contact=contact),
+            entry=entry_named(section.entry, section.entry_length or default),
+            band=own,
+        )
+    return methods, problems
+
+
+def _own_band(
+    section: MethodSection, place: str, band: RoughnessBand
+) -> RoughnessBand | Problem | None:
+    """Return the waves of a method that names its own."""
+    own = {
+        name: value
+        for name in ("n_max", "contact_patch")
+        if (value := getattr(section, name)) is not None
+    }
+    if not own:
+        return None
+    return attempt(f"{place}.{next(iter(own))}", lambda: replace(band, **own))
+
+
+def _damping(section: MethodSection, place: str) -> Damping | Problem:
+    d = section.damping
+    alpha, beta = d.rayleigh_alpha, d.rayleigh_beta
+    if d.ratio is not None and alpha is None and beta is None:
+        return ModalRatio(ratio=d.ratio)
+    if d.ratio is None and alpha is not None and beta is not None:
+        return Rayleigh(alpha=alpha, beta=beta)
+    names = ("ratio", "rayleigh_alpha", "rayleigh_beta")
+    return Problem(
+        place=f"{place}.damping",
+        value=", ".join(n for n in names if getattr(d, n) is not None) or "nothing",
+        rule="damping is either a ratio or both Rayleigh coefficients",
+        remedy='write { ratio = "3 %" } or { rayleigh_alpha = "0.8587 1/s", '
+        'rayleigh_beta = "0.001 s" }',
+    )
+
+
+def _integration(section: MethodSection, place: str) -> Integration | Problem:
+    if section.integration == "newmark":
+        return _step_by_step(section, place)
+    if section.f_max is None:
+        return Problem(
+            place=f"{place}.f_max",
+            value="nothing",
+            rule="modal superposition needs the frequency up to which modes are kept",
+            remedy='add f_max = "112 Hz": 1.25 times the end of the 80 Hz band',
+        )
+    return Modal(f_max=section.f_max, dt=section.dt, single=section.precision == "single")
+
+
+def _step_by_step(section: MethodSection, place: str) -> Newmark | Problem:
+    remedy = 'or set integration = "modal"'
+    if section.f_max is not None:
+        return Problem(
+            place=f"{place}.f_max",
+            value=f"{section.f_max:g} Hz",
+            rule="direct integration has no modes to cut off",
+            remedy=f"remove f_max, {remedy}",
+        )
+    if section.precision == "single":
+        return Problem(
+            place=f"{place}.precision",
+            value="'single'",
+            rule="direct integration is in double precision",
+            remedy=f"remove precision, {remedy}",
+        )
+    return Newmark(dt=section.dt)
+
+
+def _length_of_nothing(place: str, length: float) -> Problem:
+    return Problem(
+        place=f"{place}.entry_length",
+        value=f"{length:g} m",
+        rule="an abrupt entry has no length",
+        remedy='remove entry_length, or set entry = "drive_in" or "ramp"',
+    )
+
+
+def _ratio_with_newmark(place: str) -> Problem:
+    return Problem(
+        place=f"{place}.damping",
+        value="a ratio",
+        rule="direct integration needs Rayleigh damping: a ratio for every mode would fill the "
+        "whole matrix",
+        remedy='write { rayleigh_alpha = "0.8587 1/s", rayleigh_beta = "0.001 s" }, which is 3 % '
+        'at 3.75 and 5.8 Hz, or integration = "modal"',
+    )

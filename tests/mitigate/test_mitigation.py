@@ -1,0 +1,197 @@
+"""What would help: every combination is what a study of it would say."""
+
+import csv
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from studies import GOOD
+from trundle.errors import FitnessWarning, InputError
+from trundle.mitigate.changes import Change, each_change, every_combination
+from trundle.mitigate.mitigation import resonance_speeds, try_changes
+from trundle.report.figures_mitigation import NONE, UNKNOWN, strictest
+from trundle.run.whole_study import run_study
+from trundle.signals import Isolator
+from trundle.simulate.fitness import LOST_CONTACT
+from trundle.study_file.build import load_study
+from trundle.units import KMH
+from trundle.vehicle import container_truck_40ft
+
+TEXT = GOOD.replace('duration = "4 s"', 'duration = "14 s"')
+
+
+def study_of(folder, text=TEXT):
+    path = folder / "study.toml"
+    path.write_text(text)
+    return load_study(path)
+
+
+def verdict_of(study):
+    ((verdict,),) = run_study(study).verdicts.values()
+    return verdict
+
+
+def outcome(sweep, change, speed, road):
+    (found,) = (
+        o for o in sweep.outcomes if (o.change, o.road) == (change, road) and o.speed == speed
+    )
+    (verdict,) = found.verdicts
+    return verdict
+
+
+def test_a_combination_is_what_its_own_study_says(tmp_path):
+    """Class C at 12 km/h, a thicker slab, more damping, an isolator: against four studies."""
+    changes = [
+        Change(),
+        Change(label="slab", slab_thickness=0.3),
+        Change(label="damping", damping_ratio=0.06),
+        Change(label="isolator", isolation=Isolator(frequency=2.0, damping_ratio=0.1)),
+    ]
+    speeds = (12 * KMH, 15 * KMH)
+    study = study_of(tmp_path)
+    sweep = try_changes(study, changes=changes, speeds=speeds, roads=("B", "C"), runs=study.runs)
+    assert len(sweep.outcomes) == 4 * 2 * 2
+    slow = TEXT.replace('"15 km/h"', '"12 km/h"').replace('class = "B"', 'class = "C"')
+    for text, found in (
+        (slow, outcome(sweep, "as in the study", speeds[0], "C")),
+        (TEXT, outcome(sweep, "as in the study", speeds[1], "B")),
+        (TEXT.replace('slab_thickness = "0.2 m"', 'slab_thickness = "0.3 m"'), outcome(sweep, "slab", speeds[1], "B")),
+        (TEXT.replace('"3 %"', '"6 %"'), outcome(sweep, "damping", speeds[1], "B")),
+        (
+            TEXT.replace("[[point]]", '[[point]]\nisolator = { frequency = "2 Hz", damping = "10 %" }'),
+            outcome(sweep, "isolator", speeds[1], "B"),
+        ),
+    ):  # fmt: skip
+        own = verdict_of(study_of(tmp_path, text))
+        assert found.margin == pytest.approx(own.margin, rel=1e-5)
+        assert found.status == own.status
+    margins = sweep.margin("as in the study", "main", "C", "tool", "VC-A")
+    assert margins[0] == pytest.approx(outcome(sweep, "as in the study", speeds[0], "C").margin)
+
+
+def test_changes_together_are_what_their_own_study_says(tmp_path):
+    """Slab, damping and isolator in all 8 combinations; the last against a study of all three."""
+    levers = [
+        [Change(label="slab", slab_thickness=0.3)],
+        [Change(label="damping", damping_ratio=0.06)],
+        [Change(label="isolator", isolation=Isolator(frequency=2.0, damping_ratio=0.1))],
+    ]
+    changes = every_combination(levers)
+    assert [change.label for change in changes] == [
+        "as in the study", "isolator", "damping", "damping, isolator",
+        "slab", "slab, isolator", "slab, damping", "slab, damping, isolator",
+    ]  # fmt: skip
+    assert [change.label for change in each_change(levers)] == [
+        "as in the study", "slab", "damping", "isolator",
+    ]  # fmt: skip
+    study = study_of(tmp_path)
+    speeds = (15 * KMH,)
+    sweep = try_changes(study, changes=changes, speeds=speeds, roads=("B",), runs=study.runs)
+    assert [o.change for o in sweep.outcomes] == [change.label for change in changes]
+    text = TEXT.replace('slab_thickness = "0.2 m"', 'slab_thickness = "0.3 m"').replace(
+        '"3 %"', '"6 %"'
+    )
+    for label, own in (
+        ("as in the study", TEXT),
+        ("slab, damping", text),
+        (
+            "slab, damping, isolator",
+            text.replace(
+                "[[point]]", '[[point]]\nisolator = { frequency = "2 Hz", damping = "10 %" }'
+            ),
+        ),
+    ):
+        found = outcome(sweep, label, speeds[0], "B")
+        expected = verdict_of(study_of(tmp_path, own))
+        assert found.margin == pytest.approx(expected.margin, rel=1e-5)
+    margins = [one.verdicts[0].margin for one in sweep.outcomes]
+    assert len(set(np.round(margins, 6))) == len(changes)
+
+
+def test_a_warning_of_every_speed_stands_once(tmp_path):
+    """Modes left out are a doubt at both speeds, a road's end another one at each."""
+    speeds = (12 * KMH, 15 * KMH)
+    sweep = try_changes(
+        study_of(tmp_path), changes=[Change()], speeds=speeds, roads=("A", "B"), runs=2
+    )
+    told = sweep.warnings()
+    assert sum("modal truncation" in text for text in told) == 1
+    assert not any(text.startswith("12") and "modal truncation" in text for text in told)
+    (slow,) = (text for text in told if text.startswith("12 km/h"))
+    assert "at 12 km/h; the road excites nothing" in slow
+    pulling = FitnessWarning(subject=LOST_CONTACT, message="a wheel would pull")
+    lost = [replace(o, warnings=(pulling,)) if o.road == "B" else o for o in sweep.outcomes]
+    told = replace(sweep, outcomes=tuple(lost)).warnings()
+    assert any(text.startswith("class B: loss of contact") for text in told)
+
+
+def test_two_changes_of_one_name_are_refused(tmp_path):
+    changes = [Change(label="slab", slab_thickness=t) for t in (0.2, 0.3)]
+    with pytest.raises(InputError, match="2 changes are called 'slab'"):
+        try_changes(study_of(tmp_path), changes=changes, speeds=(4.0,), roads=("B",), runs=2)
+
+
+def test_a_criterion_is_not_met_for_want_of_excitation(tmp_path):
+    """Waves to 2.83 cycle/m end at 11.8 Hz at 15 km/h, below the bands to 25 Hz computed."""
+    study = study_of(tmp_path)
+    sweep = try_changes(study, changes=[Change()], speeds=(15 * KMH,), roads=("A",), runs=2)
+    (one,) = sweep.outcomes
+    (crossing,) = study.crossings(study.cases[0], "B", study.methods[0])
+    assert one.excited_to == pytest.approx(15 * KMH * crossing.band.n_max)
+    assert all(v.status != "pass" for v in one.verdicts)
+    assert all(min(v.unexcited) == 12.5 for v in one.verdicts if v.unexcited)
+    assert any(v.unexcited for v in one.verdicts)
+    unknown = tuple(replace(v, status="not assessed") for v in one.verdicts)
+    assert strictest(replace(one, verdicts=unknown), "tool") == UNKNOWN
+    failed = tuple(replace(v, status="fail") for v in one.verdicts)
+    assert strictest(replace(one, verdicts=failed), "tool") == NONE
+
+
+def test_resonance_speeds_are_those_of_axles_in_step():
+    """f1 = 4 Hz: axles d apart pass every 1/4 s at V = 4 d, every second beat at half of it."""
+    truck = container_truck_40ft()
+    distances = np.diff(truck.setback)
+    expected = sorted({4.0 * d / k for d in distances for k in (1, 2, 3)})
+    found = resonance_speeds(truck, 4.0, (0.1, 100.0))
+    np.testing.assert_allclose(found, expected)
+    assert all(3.0 <= v <= 7.0 for v in resonance_speeds(truck, 4.0, (3.0, 7.0)))
+
+
+def test_the_command_writes_matrix_and_margins(tmp_path, monkeypatch, capsys, trundle):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(TEXT)
+    options = ("--speeds", "10 km/h, 15 km/h", "--roads", "A,B", "--runs", "2", "--damping", "5 %")
+    assert trundle("mitigate", "study.toml", *options) == 0
+    assert "Strictest criterion met at tool: damping 5 %" in capsys.readouterr().out
+    folder = tmp_path / "study-mitigation-results"
+    with (folder / "summary.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 2 * 2 * 2
+    assert {row["speed_kmh"] for row in rows} == {"10", "15"}
+    assert all(float(row["margin"]) > 0 for row in rows)
+    assert "data:image/png" in (folder / "report.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "told"),
+    [
+        ("--speeds", "15 kg", "--speeds '15 kg'"),
+        ("--speeds", "0.001 km/h", "100000 are computed"),
+        ("--speeds", "1e9 km/h", "100000 are computed"),
+        ("--roads", "Z", "must be one of A, B"),
+        ("--slab", "2 mm", "20 mm to 3 m"),
+        ("--damping", "0 %", "above 0"),
+        ("--isolator", "2 Hz", "2 Hz / 10 %"),
+        ("--vehicle", "bicycle", "must be one of"),
+        ("--slab", "0.3 m, 300 mm", "slab 300 mm stands there 2 times"),
+    ],
+)
+def test_changes_that_cannot_be_are_refused(
+    tmp_path, monkeypatch, capsys, trundle, option, value, told
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "study.toml").write_text(TEXT)
+    assert trundle("mitigate", "study.toml", option, value) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "study-mitigation-results").exists()

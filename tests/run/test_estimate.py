@@ -1,0 +1,99 @@
+"""What a study will take is told before it is taken."""
+
+from pathlib import Path
+
+import pytest
+
+from studies import GOOD, run_main
+from trundle.cli import afford
+from trundle.dynamics import natural_modes
+from trundle.errors import StudyError
+from trundle.mitigate.changes import Change
+from trundle.mitigate.estimate import estimate_of_changes
+from trundle.run import estimate
+from trundle.run.estimate import estimate_of
+from trundle.run.jobs import plan_jobs
+from trundle.study_file.build import load_study
+
+
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("TRUNDLE_CACHE", "")
+
+    def written(*changes):
+        text = GOOD
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new)
+        path = tmp_path / "study.toml"
+        path.write_text(text)
+        return path
+
+    return written
+
+
+def test_the_number_of_modes_is_weyl_s(study):
+    """Two bays in closed form: ``A f sqrt(m / D) / 2`` against all modes of the mesh."""
+    template = Path(estimate.__file__).with_name("template.toml")
+    found = load_study(template)
+    (job,) = plan_jobs(found)
+    floor = found.floor
+    counted = natural_modes(floor.mass, floor.stiffness, f_max=112.0).n_modes
+    assert estimate.n_modes_of(found.plan, job) == pytest.approx(counted, rel=0.25)
+
+
+def test_time_grows_with_what_is_asked_for(study):
+    few = estimate_of(load_study(study()))
+    many = estimate_of(load_study(study(("runs = 2", "runs = 200000"))))
+    assert many.seconds > 50.0 * few.seconds
+    assert many.memory < 20.0 * few.memory  # batches are let go of
+    loaded = load_study(study())
+    one = estimate_of_changes(loaded, [Change()], [5.0], 60)
+    assert estimate_of_changes(loaded, [Change()], [5.0] * 9, 60).seconds > one.seconds
+    slabs = [Change(slab_thickness=0.2), Change(slab_thickness=0.3)]
+    assert estimate_of_changes(loaded, slabs, [5.0], 60).seconds > one.seconds
+
+
+@pytest.mark.parametrize("why", ["time", "memory"])
+def test_what_is_too_much_asks_before_work(study, monkeypatch, capsys, why):
+    if why == "time":
+        path = study(("runs = 2", "runs = 1000000"))
+    else:
+        path = study()
+        monkeypatch.setattr(afford, "memory_there_is", lambda: 1e7)
+    code, output = run_main(monkeypatch, capsys, "run", path)
+    assert code == 2
+    assert "say --yes" in output.err
+    assert ("that is long" if why == "time" else "there are 0.01 GB") in output.err
+    assert [p.name for p in path.parent.iterdir()] == ["study.toml"]
+    code, output = run_main(monkeypatch, capsys, "check", path)
+    assert code == 0
+    assert "'trundle run' asks for --yes" in output.out
+
+
+def test_with_yes_it_is_computed(study, monkeypatch, capsys):
+    monkeypatch.setattr(afford, "_LONG", 0.0)
+    path = study()
+    assert run_main(monkeypatch, capsys, "run", path)[0] == 2
+    code, output = run_main(monkeypatch, capsys, "run", path, "--yes", "--quiet")
+    assert (code, output.out) == (0, "")
+    assert (path.parent / "study-results" / "report.html").exists()
+
+
+def test_the_run_in_counts(study):
+    """A record of a few steps, before which a vehicle drives for seconds of tiny ones."""
+    path = study(('dt = "5 ms"', 'dt = "10 ns"'))
+    text = path.read_text().replace('duration = "', 'duration = "1 us" #')
+    path.write_text(text if "1 us" in text else 'duration = "1 us"\n' + text)
+    with pytest.raises(StudyError, match="run-in included"):
+        load_study(path)
+
+
+def test_two_meshes_ask_too(study, monkeypatch, capsys):
+    monkeypatch.setattr(afford, "memory_there_is", lambda: 1e7)
+    path = study()
+    code, output = run_main(monkeypatch, capsys, "check", path, "--meshes")
+    assert code == 2
+    assert "on half its mesh size: it would take" in output.err
+    assert run_main(monkeypatch, capsys, "check", path, "--meshes", "--json")[0] == 2

@@ -1,0 +1,145 @@
+"""What is sent to workers: every part with the layout of its own job."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from studies import GOOD
+from trundle.errors import ComputationError, InputError
+from trundle.run import scale_out
+from trundle.run.jobs import LaidOut, plan_jobs
+from trundle.run.scale_out import Cluster, cluster_at, local_cluster
+from trundle.study_file.build import load_study
+
+
+@dataclass(eq=False)
+class Answered:
+    """A future whose result is there: which layout the part was sent with."""
+
+    value: Any
+    status: str = "finished"
+
+    def done(self):
+        return True
+
+    def result(self):
+        return self.value
+
+    def release(self):
+        pass
+
+
+@dataclass
+class Client:
+    """Keeps what is scattered, as workers do, and answers with it."""
+
+    scattered: list = field(default_factory=list)
+    status: str = "running"
+
+    def scatter(self, carrier, *, hash):
+        assert not hash
+        self.scattered.append(carrier.layout)
+        return Answered(carrier.layout)
+
+    def submit(self, _work, _job, carrier, _part, _source, **_options):
+        return Answered(carrier.value)
+
+
+def test_a_layout_is_never_taken_for_one_that_was_let_go_of(tmp_path, monkeypatch):
+    """Layouts come and go at the same place in memory; 50 jobs each get their own."""
+    lost = SimpleNamespace(CancelledError=KeyError, KilledWorker=OSError)
+    monkeypatch.setattr(scale_out, "_distributed", lambda: lost)
+    (tmp_path / "study.toml").write_text(GOOD)
+    job = plan_jobs(load_study(tmp_path / "study.toml"))[0]
+    client, found = Client(), []
+    cluster = Cluster(client)
+    for i in range(50):
+        cluster.submit(job, range(2), LaidOut(layout=i, places=None))
+        cluster.collect(lambda _name, layout: found.append(layout), wait=False)
+    assert found == [i for i in range(50) for _ in range(2)]
+    assert client.scattered == list(range(50))
+    assert not cluster._sent  # nothing is held that no part waits for
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+def test_the_ports_of_workers_open_with_this_runs_keys_alone():
+    """All listen on loopback, none is the dashboard's, and none takes a client without keys."""
+    psutil, distributed = pytest.importorskip("psutil"), pytest.importorskip("distributed")
+    with local_cluster(2) as cluster:
+        here = psutil.Process()
+        listening = [
+            link.laddr
+            for process in [here, *here.children(recursive=True)]
+            for link in process.net_connections()
+            if link.status == psutil.CONN_LISTEN
+        ]
+        assert len(listening) >= 3
+        assert {place.ip for place in listening} == {"127.0.0.1"}
+        assert 8787 not in {place.port for place in listening}
+        address = cluster._client.scheduler.address
+        assert address.startswith("tls://")
+        for scheme in ("tcp", "tls"):
+            with pytest.raises((OSError, TypeError)):
+                distributed.Client(address.replace("tls", scheme), timeout=2)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+def test_workers_with_another_source_are_refused(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=1, host="127.0.0.1", dashboard_address=None, silence_logs=50
+    ) as there:
+        with cluster_at(there.scheduler_address):
+            pass  # the same source
+        own = scale_out.source_hash
+        monkeypatch.setattr(scale_out, "_own_source", lambda: own() + "edited")
+        with (
+            pytest.raises(InputError, match="another trundle"),
+            cluster_at(there.scheduler_address),
+        ):
+            pass
+
+
+def test_a_lost_scheduler_is_named(monkeypatch, tmp_path):
+    """The client has closed by itself: nothing would ever be done."""
+    lost = SimpleNamespace(
+        CancelledError=KeyError, KilledWorker=OSError, wait=lambda *_, **__: None
+    )
+    monkeypatch.setattr(scale_out, "_distributed", lambda: lost)
+    (tmp_path / "study.toml").write_text(GOOD)
+    job = plan_jobs(load_study(tmp_path / "study.toml"))[0]
+    client = Client()
+    cluster = Cluster(client)
+    cluster.submit(job, range(1), LaidOut(layout=1, places=None))
+    client.status = "closed"
+    with pytest.raises(ComputationError, match="what was finished is kept"):
+        cluster.collect(lambda *_: None, wait=True)
+
+
+def test_parts_lost_while_they_are_waited_for_are_sent_again(monkeypatch, tmp_path):
+    """A worker dies with a part: the wait itself is cancelled, and then the part is done again."""
+    told = []
+
+    def wait(*_, **__):
+        told.append(1)
+        if len(told) == 1:
+            raise KeyError
+
+    lost = SimpleNamespace(CancelledError=KeyError, KilledWorker=OSError, wait=wait)
+    monkeypatch.setattr(scale_out, "_distributed", lambda: lost)
+    (tmp_path / "study.toml").write_text(GOOD)
+    job = plan_jobs(load_study(tmp_path / "study.toml"))[0]
+    found, cluster = [], Cluster(Client())
+    cluster.submit(job, range(2), LaidOut(layout=7, places=None))
+    cluster.collect(lambda _name, layout: found.append(layout), wait=True)
+    assert found == [7, 7]
+
+
+def test_every_part_asks_its_worker_for_its_source():
+    """A worker may join when the work is under way; nothing of another's is stored."""
+    with pytest.raises(ComputationError, match="has another trundle"):
+        scale_out._compute(None, None, 0, scale_out.source_hash() + "edited")

@@ -14,7 +14,7 @@ from settings import POINT, rear_crossing
 
 import trundle as tr
 from trundle.simulate import Coupled, Decoupled, lay_out, prepare
-from trundle.simulate._roads import roads_under_wheels
+from trundle.simulate.wheels.roads import roads_under_wheels
 
 STEPS = 100
 TOGETHER = (1, 8, 64)

@@ -28,7 +28,7 @@ from trundle.simulate import (
     lay_out,
     prepare,
 )
-from trundle.simulate._roads import roads_under_wheels
+from trundle.simulate.wheels.roads import roads_under_wheels
 from trundle.vehicle import sprung_mass
 
 STEPS = 400

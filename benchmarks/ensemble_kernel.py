@@ -19,9 +19,9 @@ import numpy as np
 from settings import dgemm_rate, rear_layout
 from threadpoolctl import ThreadpoolController
 
-from trundle.simulate._roads import roads_under_wheels
-from trundle.simulate.ensemble import batch_size
+from trundle.simulate.ensembles import batch_size
 from trundle.simulate.layout import _springs
+from trundle.simulate.wheels.roads import roads_under_wheels
 
 MODES, STEPS, RUNS, DT = 1000, 4000, 1000, 0.005
 PEER_STEPS = 200

@@ -16,8 +16,8 @@ import trundle as tr
 from trundle.dynamics import natural_modes
 from trundle.report.canvas import COLOURS, STYLE, make_logarithmic, new_figure
 from trundle.simulate import prepare
-from trundle.simulate._roads import roads_under_wheels
-from trundle.simulate.ensemble import batch_size
+from trundle.simulate.ensembles import batch_size
+from trundle.simulate.wheels.roads import roads_under_wheels
 
 PICTURE = Path(__file__).resolve().parents[1] / "docs" / "images" / "scaling.svg"
 RUNS = (10, 30, 100, 300, 1000, 3000, 10000)

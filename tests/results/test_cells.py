@@ -1,13 +1,13 @@
 """Cells that share an ensemble are what each would be alone."""
 
 import numpy as np
-from studies import GOOD
 
+from studies import GOOD
 from trundle.report import summary_rows
-from trundle.simulate import Coupled, Decoupled, ensemble
-from trundle.study_file.build import load_study
 from trundle.results.cells import CellKey
 from trundle.run.whole_study import run_study
+from trundle.simulate import Coupled, Decoupled, ensemble
+from trundle.study_file.build import load_study
 from trundle.units import GAL
 
 

@@ -19,8 +19,8 @@ from trundle.simulate import (
     lay_out,
     mean_response,
 )
-from trundle.simulate import _block_march as march
-from trundle.simulate import _powers as powers
+from trundle.simulate.modal import block_march as march
+from trundle.simulate.modal import powers
 from trundle.vehicle import container_truck_40ft, quarter_car
 
 POINTS = {"a": (3.0, 3.0), "b": (7.3, 1.9)}

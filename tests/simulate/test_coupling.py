@@ -24,8 +24,8 @@ from trundle.simulate import (
     ensemble,
     prepare,
 )
-from trundle.simulate._roads import _Source, roads_under_wheels
-from trundle.simulate._schedule import operator_rows, timeline_of
+from trundle.simulate.wheels.roads import _Source, roads_under_wheels
+from trundle.simulate.wheels.timeline import operator_rows, timeline_of
 from trundle.vehicle import container_truck_40ft, library_vehicle, quarter_car
 
 DAMPING = Rayleigh(alpha=0.5, beta=0.001)

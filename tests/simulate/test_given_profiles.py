@@ -11,9 +11,9 @@ from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand, synthesise
 from trundle.route import DriveIn, Route, SteadyAcceleration
 from trundle.simulate import Coupled, Crossing, Decoupled, Modal, contact_forces, ensemble
-from trundle.simulate._given_road import given_road, given_road_doubts
-from trundle.simulate._roads import roads_under_wheels
-from trundle.simulate._schedule import timeline_of
+from trundle.simulate.wheels.given_road import given_road, given_road_doubts
+from trundle.simulate.wheels.roads import roads_under_wheels
+from trundle.simulate.wheels.timeline import timeline_of
 from trundle.units import KMH
 from trundle.vehicle import container_truck_40ft, quarter_car, sprung_mass
 

@@ -19,7 +19,7 @@ from trundle.simulate import (
 )
 from trundle.vehicle import container_truck_40ft
 
-module = importlib.import_module("trundle.simulate.place_spectra")
+module = importlib.import_module("trundle.simulate.spectral.place_spectra")
 
 
 @pytest.fixture(scope="module")

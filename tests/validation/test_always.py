@@ -24,14 +24,14 @@ from trundle.dynamics import (
 from trundle.road import Profile
 from trundle.route import DriveIn, Hermite, Route
 from trundle.simulate import Coupled, Crossing, ensemble, prepare
-from trundle.simulate import _march as march
-from trundle.simulate._block_march import Steps, drive_in_blocks
-from trundle.simulate._floors import FullFloor
-from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._point_motion import complete, point_filters
-from trundle.simulate._roads import drawn_roads, roads_under_wheels
-from trundle.simulate._schedule import operator_rows, timeline_of
+from trundle.simulate.direct import march
+from trundle.simulate.direct.floors import FullFloor
 from trundle.simulate.layout import _springs
+from trundle.simulate.modal.block_march import Steps, drive_in_blocks
+from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.modal.point_motion import complete, point_filters
+from trundle.simulate.wheels.roads import drawn_roads, roads_under_wheels
+from trundle.simulate.wheels.timeline import operator_rows, timeline_of
 from trundle.vehicle import container_truck_40ft, quarter_car
 
 CASE = "Always"

@@ -1,7 +1,7 @@
 """Hold vibration criteria as data and responses against them."""
 
-from trundle.criteria.assess import assess, assess_reduced, best_class, spectra_asked_for
-from trundle.criteria.class_map import ClassMap, class_map, envelope_of
+from trundle.criteria.assessing import assess, assess_reduced, best_class, spectra_asked_for
+from trundle.criteria.class_maps import ClassMap, class_map, envelope_of
 from trundle.criteria.curve import (
     BY_FREQUENCY,
     VC,

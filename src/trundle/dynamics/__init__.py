@@ -4,7 +4,7 @@ from trundle.dynamics.damping import Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
 from trundle.dynamics.exact import ExactRecursion, Modal, ModalRecursion
 from trundle.dynamics.newmark import HalfStep, Newmark, NewmarkPropagator
-from trundle.dynamics.repeatable import repeatable
+from trundle.dynamics.same_bits import repeatable
 from trundle.dynamics.sampling import (
     REACH,
     TOP,

@@ -1,9 +1,9 @@
 """Reduce histories to spectra, percentiles, bounds and exact statistics."""
 
 from trundle.response.bounds import UpperBounds, percentile_rank, upper_bounds
-from trundle.response.floor_map import FloorMap, floor_map
+from trundle.response.floor_maps import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
-from trundle.response.level_warnings import few_runs_warnings, level_warnings
+from trundle.response.level_doubts import few_runs_warnings, level_warnings
 from trundle.response.measured import reduce_record
 from trundle.response.peaks import LargestValues
 from trundle.response.reduction import (
@@ -13,7 +13,7 @@ from trundle.response.reduction import (
     reduce_rougher,
     reduce_runs,
 )
-from trundle.response.size_warnings import size_warnings
+from trundle.response.size_doubts import size_warnings
 from trundle.response.spectra import (
     BandSpectra,
     SpectrumQuantity,

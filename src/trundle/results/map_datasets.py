@@ -10,8 +10,8 @@ import xarray as xr
 
 from trundle.criteria import ClassMap, envelope_of
 from trundle.results.maps import MapKey, StudyMap
-from trundle.study.map_plan import MapPlan
 from trundle.results.study_result import StudyResult
+from trundle.study.map_plan import MapPlan
 
 __all__ = ["map_groups", "single_maps"]
 

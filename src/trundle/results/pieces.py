@@ -16,9 +16,9 @@ from trundle.response import (
     SpectrumQuantity,
     join,
 )
+from trundle.results.cells import EXACT_SHARES, Cell, CellKey, History
 from trundle.simulate import Coverage, Runs, TruncationChange
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
-from trundle.results.cells import EXACT_SHARES, Cell, CellKey, History
 
 __all__ = ["Piece", "cell_of", "exact_piece", "runs_piece"]
 

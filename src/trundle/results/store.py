@@ -13,9 +13,9 @@ import xarray as xr
 
 from trundle import __version__
 from trundle._csv import write_csv
+from trundle._json import plain
 from trundle.response import percentile_interval
 from trundle.results.cells import Cell
-from trundle._json import plain
 from trundle.results.datasets import result_groups
 from trundle.results.results_folder import uninterrupted
 from trundle.results.study_result import StudyResult, positions_at

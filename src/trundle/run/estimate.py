@@ -16,7 +16,7 @@ import numpy as np
 from trundle.dynamics import Modal
 from trundle.run.jobs import Job, plan_jobs
 from trundle.run.mode_cache import has_modes
-from trundle.simulate.ensemble import runs_at_once
+from trundle.simulate.ensembles import runs_at_once
 from trundle.structure import FloorPlan
 from trundle.study.model import Study
 

@@ -30,7 +30,7 @@ from trundle.simulate import (
     runs_with_mean,
     truncation_change,
 )
-from trundle.simulate.ensemble import runs_at_once
+from trundle.simulate.ensembles import runs_at_once
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Case, MethodPlan, Study
 

@@ -1,10 +1,9 @@
 """Drive vehicles over floors: decoupled or coupled, one at a time or together."""
 
 from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
-from trundle.simulate._residual import StaticFlexibility
 from trundle.simulate.coverage import Coverage, coverage_of
 from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
-from trundle.simulate.ensemble import (
+from trundle.simulate.ensembles import (
     batches,
     contact_force_histories,
     contact_forces,
@@ -12,19 +11,20 @@ from trundle.simulate.ensemble import (
     runs_with_mean,
 )
 from trundle.simulate.fitness import resolved_to
-from trundle.simulate.harmonics import (
+from trundle.simulate.layout import Layout, lay_out
+from trundle.simulate.modal.residual import StaticFlexibility
+from trundle.simulate.point_load import point_load_deflection
+from trundle.simulate.prepared import PreparedFloor, prepare
+from trundle.simulate.runs import MeanResponse, Runs
+from trundle.simulate.spectral.harmonics import (
     Harmonics,
     Waves,
     harmonics,
     mean_response,
     place_waves,
 )
-from trundle.simulate.layout import Layout, lay_out
-from trundle.simulate.place_spectra import place_spectra
-from trundle.simulate.places import PlaceResponses, lay_out_places
-from trundle.simulate.point_load import point_load_deflection
-from trundle.simulate.prepared import PreparedFloor, prepare
-from trundle.simulate.runs import MeanResponse, Runs
+from trundle.simulate.spectral.place_spectra import place_spectra
+from trundle.simulate.spectral.places import PlaceResponses, lay_out_places
 from trundle.simulate.truncation import TruncationChange, truncation_change
 
 __all__ = [

@@ -25,11 +25,10 @@ from trundle.dynamics import (
 )
 from trundle.errors import FitnessWarning, InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
-from trundle.simulate._block_march import Steps, drive_in_blocks
-from trundle.simulate._floors import FullFloor, RigidGround
-from trundle.simulate._followers import Followers, followers_of
-from trundle.simulate._given_road import given_road_doubts
-from trundle.simulate._march import (
+from trundle.simulate.coverage import Coverage, coverage_of
+from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
+from trundle.simulate.direct.floors import FullFloor, RigidGround
+from trundle.simulate.direct.march import (
     ContactLaw,
     Progress,
     Record,
@@ -39,16 +38,17 @@ from trundle.simulate._march import (
     run_in,
     static_start,
 )
-from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._point_motion import PointFilters, complete, point_filters
-from trundle.simulate._residual import point_residual
-from trundle.simulate._roads import RoadUnderWheels
-from trundle.simulate._schedule import Timeline, operator_rows, timeline_of
-from trundle.simulate.coverage import Coverage, coverage_of
-from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.fitness import fitness_warnings, resolved_to
+from trundle.simulate.modal.block_march import Steps, drive_in_blocks
+from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.modal.followers import Followers, followers_of
+from trundle.simulate.modal.point_motion import PointFilters, complete, point_filters
+from trundle.simulate.modal.residual import point_residual
 from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.step_limits import check_contact_loop, step_problem
+from trundle.simulate.wheels.given_road import given_road_doubts
+from trundle.simulate.wheels.roads import RoadUnderWheels
+from trundle.simulate.wheels.timeline import Timeline, operator_rows, timeline_of
 from trundle.structure import Floor
 
 __all__ = ["Layout", "lay_out", "lay_out_on_rigid_ground"]

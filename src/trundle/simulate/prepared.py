@@ -20,8 +20,8 @@ from trundle.dynamics import (
     natural_modes,
 )
 from trundle.errors import InputError
-from trundle.simulate._residual import StaticFlexibility
 from trundle.simulate.crossing import Integration
+from trundle.simulate.modal.residual import StaticFlexibility
 from trundle.structure import Floor
 
 __all__ = ["PreparedFloor", "prepare"]

@@ -15,8 +15,8 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.dynamics import TOP, ExactRecursion, ModalRecursion
 from trundle.errors import InputError
-from trundle.simulate._march import Springs
-from trundle.simulate._modal_floor import ModalFloor
+from trundle.simulate.direct.march import Springs
+from trundle.simulate.modal.floor import ModalFloor
 from trundle.vehicle import Vehicle
 
 __all__ = ["check_contact_loop", "longest_step", "step_problem"]

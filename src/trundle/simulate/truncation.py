@@ -11,9 +11,9 @@ from trundle._checks import within
 from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.errors import InputError
-from trundle.simulate._roads import roads_under_wheels
 from trundle.simulate.layout import Layout
 from trundle.simulate.runs import Runs
+from trundle.simulate.wheels.roads import roads_under_wheels
 
 __all__ = ["TruncationChange", "truncation_change"]
 

@@ -1,6 +1,6 @@
 """Model floors with flat shells, eccentric beams, springs and supports."""
 
-from trundle.structure.arching import arching
+from trundle.structure.arches import arching
 from trundle.structure.bridge import beam_bridge
 from trundle.structure.edges import EDGES, Edge
 from trundle.structure.floor import (

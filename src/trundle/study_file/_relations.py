@@ -9,7 +9,7 @@ from trundle.dynamics import Modal
 from trundle.errors import InputError, Problem
 from trundle.road import RoadClass, RoughnessBand
 from trundle.simulate import Crossing
-from trundle.simulate.ensemble import LEAST_BATCH
+from trundle.simulate.ensembles import LEAST_BATCH
 from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import FloorPlan
 from trundle.study.model import Drive, MethodPlan

@@ -11,7 +11,7 @@ from scipy import sparse
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import ModalRecursion, Modes
 from trundle.route import ContactRows
-from trundle.simulate._residual import StaticFlexibility, residual_block
+from trundle.simulate.modal.residual import StaticFlexibility, residual_block
 
 __all__ = ["ModalFloor"]
 

@@ -22,8 +22,8 @@ from jaxtyping import Float, Int
 
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, factorise
-from trundle.simulate._schedule import route_dofs
 from trundle.simulate.crossing import Crossing
+from trundle.simulate.wheels.timeline import route_dofs
 from trundle.structure import Floor
 
 __all__ = [

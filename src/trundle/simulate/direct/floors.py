@@ -11,7 +11,7 @@ from scipy import sparse
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import HalfSolve, HalfStep, Motion, NewmarkPropagator, State
 from trundle.route import ContactRows
-from trundle.simulate._residual import StaticFlexibility, unit_loads
+from trundle.simulate.modal.residual import StaticFlexibility, unit_loads
 
 __all__ = ["ContactFloor", "FullFloor", "RigidGround"]
 
@@ -72,33 +72,40 @@ class RigidGround:
         self._n = n_contacts
 
     def start(self, n_runs: int, forces: Array | None) -> State:
+        """Return the state at rest, deflected by static forces if given."""
         del forces
         empty = np.zeros((0, n_runs))
         return State(displacement=empty, velocity=empty, acceleration=empty)
 
     def predict(self, step: int, state: State, forces: Array | None) -> Prediction:
+        """Return the motion at the step's end under known contact forces."""
         del step, forces
         return Motion(displacement=state.displacement, velocity=state.velocity)
 
     def under_wheels(self, step: int, motion: Prediction, before: Array) -> tuple[Array, Array]:
+        """Return the floor's height and its rate under each moving wheel."""
         del step, before
         still = np.zeros((self._n, motion.velocity.shape[1]))
         return still, still
 
     def compliance(self, step: int) -> tuple[Array, Array]:
+        """Return the sinking and its rate under wheel i for a unit force of wheel j."""
         del step
         return np.zeros((self._n, self._n)), np.zeros((self._n, self._n))
 
     def static_sinking(self) -> Array:
+        """Return the static sinking under wheel i for a unit force of wheel j."""
         return np.zeros((self._n, self._n))
 
     def finish(
         self, step: int, state: State, motion: Prediction, forces: Array, *, applied: bool
     ) -> State:
+        """Return the state at the step's end."""
         del step, motion, forces, applied
         return state
 
     def read(self, state: State) -> Reading:
+        """Return displacement, velocity and acceleration at the points."""
         empty = np.zeros((0, state.displacement.shape[1]))
         return empty, empty, empty
 
@@ -154,21 +161,25 @@ class FullFloor:
             self._unit_at_route = self._unit[:, self._route_dofs]
 
     def start(self, n_runs: int, forces: Array | None) -> State:
+        """Return the state at rest, deflected by static forces if given."""
         u = np.zeros((self._n_dofs, n_runs))
         if forces is not None:
             u = self._static.solve(self._load(0, forces))
         return self._propagator.start(u)
 
     def static_sinking(self) -> Array:
+        """Return the static sinking under wheel i for a unit force of wheel j."""
         unit = self._static.solve(self._load(0, np.eye(self._n)))
         return -np.einsum("cw,cwj->cj", self._value[0], unit[self._dofs[0]])
 
     def predict(self, step: int, state: State, forces: Array | None) -> Prediction:
+        """Return the motion at the step's end under known contact forces."""
         if forces is None and self._halves is not None:
             return self._propagator.begin(state, self._halves[0])
         return self._propagator.predict(state, None if forces is None else self._load(step, forces))
 
     def under_wheels(self, step: int, motion: Prediction, before: Array) -> tuple[Array, Array]:
+        """Return the floor's height and its rate under each moving wheel."""
         del before
         dofs = self._dofs[step]
         u, v = motion.displacement[dofs], motion.velocity[dofs]
@@ -182,6 +193,7 @@ class FullFloor:
         return height, rate + self._speed[step][:, None] * (slope @ u)[:, 0]
 
     def compliance(self, step: int) -> tuple[Array, Array]:
+        """Return the sinking and its rate under wheel i for a unit force of wheel j."""
         value, slope = (_spread(weights[step]) for weights in (self._value, self._slope))
         at = self._places(step)
         unit = self._unit_at_route[np.ix_(at, at)]
@@ -193,6 +205,7 @@ class FullFloor:
     def finish(
         self, step: int, state: State, motion: Prediction, forces: Array, *, applied: bool
     ) -> State:
+        """Return the state at the step's end."""
         load = _spread(self._value[step]).T @ (self._load_share[step][:, None] * forces)
         if isinstance(motion, HalfStep):
             assert self._halves is not None  # only they leave a step half done
@@ -209,6 +222,7 @@ class FullFloor:
         return self._propagator.finish(state, motion)
 
     def read(self, state: State) -> Reading:
+        """Return displacement, velocity and acceleration at the points."""
         points = self._points
         return points @ state.displacement, points @ state.velocity, points @ state.acceleration
 

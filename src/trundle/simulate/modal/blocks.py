@@ -25,8 +25,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from trundle._typing import Array
-from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._powers import FloorPowers, VehiclePowers, rows_on_state
+from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.modal.powers import FloorPowers, VehiclePowers, rows_on_state
 
 __all__ = ["Block", "contact_block", "load_block"]
 

@@ -19,9 +19,9 @@ from trundle._typing import Array
 from trundle.dynamics import ModalRecursion
 from trundle.errors import InputError
 from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
-from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._residual import unit_loads
 from trundle.simulate.layout import Layout
+from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.modal.residual import unit_loads
 from trundle.simulate.prepared import PreparedFloor
 
 __all__ = ["PlaceResponses", "lay_out_places"]

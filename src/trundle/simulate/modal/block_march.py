@@ -15,13 +15,13 @@ from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import REACH, ExactRecursion
 from trundle.errors import UnstableStepError
-from trundle.simulate._blocks import Block, contact_block, load_block
-from trundle.simulate._march import Progress, Record, Springs
-from trundle.simulate._modal_floor import ModalFloor
-from trundle.simulate._powers import FloorPowers, VehiclePowers
-from trundle.simulate._rigid_march import forces_on_rigid_ground
-from trundle.simulate._roads import RoadUnderWheels
-from trundle.simulate._schedule import Timeline
+from trundle.simulate.direct.march import Progress, Record, Springs
+from trundle.simulate.modal.blocks import Block, contact_block, load_block
+from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.modal.powers import FloorPowers, VehiclePowers
+from trundle.simulate.modal.rigid_march import forces_on_rigid_ground
+from trundle.simulate.wheels.roads import RoadUnderWheels
+from trundle.simulate.wheels.timeline import Timeline
 
 __all__ = ["Steps", "drive_in_blocks"]
 

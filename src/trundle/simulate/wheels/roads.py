@@ -14,9 +14,9 @@ from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.road import Profile, ProfileReader, RoadClass, synthesise_tracks
-from trundle.simulate._given_road import given_road
-from trundle.simulate._schedule import Timeline, columns_of, contact_springs
 from trundle.simulate.crossing import Crossing
+from trundle.simulate.wheels.given_road import given_road
+from trundle.simulate.wheels.timeline import Timeline, columns_of, contact_springs
 
 __all__ = ["RoadUnderWheels", "drawn_roads", "roads_under_wheels", "run_generator"]
 

@@ -21,9 +21,9 @@ from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import REACH, differentiator, image_filters, restoring_filter
 from trundle.route import ContactRows
-from trundle.simulate._followers import Followers
-from trundle.simulate._march import Record
-from trundle.simulate._modal_floor import ModalFloor
+from trundle.simulate.direct.march import Record
+from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.modal.followers import Followers
 
 __all__ = ["PointFilters", "complete", "point_filters"]
 

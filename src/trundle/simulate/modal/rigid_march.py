@@ -16,7 +16,7 @@ from scipy import linalg
 
 from trundle._typing import Array
 from trundle.dynamics import REACH, restoring_filter
-from trundle.simulate._powers import VehiclePowers
+from trundle.simulate.modal.powers import VehiclePowers
 
 __all__ = ["forces_on_rigid_ground"]
 

@@ -18,12 +18,12 @@ from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.errors import InputError
 from trundle.road import RoadClass, RoughnessBand, track_coherence, wave_power
-from trundle.simulate._roads import RoadUnderWheels, roads_under_wheels
-from trundle.simulate._schedule import columns_of, contact_springs
 from trundle.simulate.crossing import Crossing
-from trundle.simulate.ensemble import batch_size, mean_of, part_of
+from trundle.simulate.ensembles import batch_size, mean_of, part_of
 from trundle.simulate.layout import Layout
 from trundle.simulate.runs import MeanResponse
+from trundle.simulate.wheels.roads import RoadUnderWheels, roads_under_wheels
+from trundle.simulate.wheels.timeline import columns_of, contact_springs
 
 __all__ = ["Harmonics", "Waves", "harmonics", "mean_response", "place_waves"]
 

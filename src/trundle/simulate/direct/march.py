@@ -12,9 +12,9 @@ from scipy import linalg
 from trundle._typing import Array
 from trundle.dynamics import Motion, Propagator, State
 from trundle.errors import UnstableStepError
-from trundle.simulate._floors import ContactFloor, RigidGround
-from trundle.simulate._roads import RoadUnderWheels
-from trundle.simulate._schedule import Timeline
+from trundle.simulate.direct.floors import ContactFloor, RigidGround
+from trundle.simulate.wheels.roads import RoadUnderWheels
+from trundle.simulate.wheels.timeline import Timeline
 
 __all__ = [
     "ContactLaw",

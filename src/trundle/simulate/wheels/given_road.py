@@ -10,9 +10,9 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 from trundle.road import Profile, profile_doubts
-from trundle.simulate._profile_step import check_profile_step, hidden_by_step
-from trundle.simulate._schedule import Timeline, timeline_of
 from trundle.simulate.crossing import Crossing
+from trundle.simulate.wheels.profile_step import check_profile_step, hidden_by_step
+from trundle.simulate.wheels.timeline import Timeline, timeline_of
 from trundle.vehicle import Vehicle
 
 __all__ = ["GivenRoad", "given_road", "given_road_doubts"]

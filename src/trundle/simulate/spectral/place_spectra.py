@@ -27,7 +27,7 @@ from trundle.dynamics import (
     responses_of,
     restoring_filter,
 )
-from trundle.simulate.places import PlaceResponses
+from trundle.simulate.spectral.places import PlaceResponses
 
 __all__ = ["place_spectra"]
 

@@ -10,14 +10,14 @@ from jaxtyping import Float
 from trundle._checks import count
 from trundle._kinds import kinds_checked
 from trundle._typing import Array
-from trundle.simulate._march import Record
-from trundle.simulate._roads import roads_under_wheels
-from trundle.simulate._schedule import Timeline, timeline_of
 from trundle.simulate.crossing import Crossing, Integration, Interaction
+from trundle.simulate.direct.march import Record
 from trundle.simulate.fitness import contact_warnings
 from trundle.simulate.layout import Layout, lay_out, lay_out_on_rigid_ground
 from trundle.simulate.prepared import PreparedFloor
 from trundle.simulate.runs import MeanResponse, Runs
+from trundle.simulate.wheels.roads import roads_under_wheels
+from trundle.simulate.wheels.timeline import Timeline, timeline_of
 from trundle.structure import Floor
 
 __all__ = [

@@ -1,0 +1,1 @@
+"""Hold what a study gave, and keep it in a folder."""

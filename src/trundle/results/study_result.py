@@ -1,0 +1,120 @@
+"""Hold what a whole study gave."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from trundle.criteria import Verdict
+from trundle.dynamics import Modes
+from trundle.errors import FitnessWarning
+from trundle.response import BandSpectra, few_runs_warnings, level_warnings, size_warnings
+from trundle.results.cells import Cell, CellKey
+from trundle.results.maps import MapKey, StudyMap
+from trundle.simulate import Crossing
+from trundle.study.assumptions import assumption_warnings, early_end_warnings
+from trundle.study.doubts import study_doubts
+from trundle.study.model import Study
+
+__all__ = ["StudyResult", "positions_at", "wheels_at"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StudyResult:
+    """Hold the results of a study.
+
+    Attributes
+    ----------
+    study : Study
+        What was run.
+    cells : mapping of CellKey to Cell
+        Every cell.
+    verdicts : mapping of CellKey to tuple of Verdict
+        Verdicts of the cells of the assessed method.
+    maps : mapping of MapKey to StudyMap
+        Maps by the assessed method, where the study asks for them: at the study's speeds and at
+        those that its map names.
+    modes : Modes or None
+        Natural modes of the floor, where a method used them.
+    """
+
+    study: Study
+    cells: Mapping[CellKey, Cell]
+    verdicts: Mapping[CellKey, tuple[Verdict, ...]]
+    maps: Mapping[MapKey, StudyMap]
+    modes: Modes | None
+
+    def warnings(self) -> dict[str, tuple[FitnessWarning, ...]]:
+        """Return the doubts of each method, each once."""
+        by_method: dict[str, dict[FitnessWarning, None]] = {}
+        for key, cell in self.cells.items():
+            sizes = size_warnings({f"{key.case}, class {key.road}": cell.reduced})
+            doubts = dict.fromkeys((*cell.warnings, *sizes))
+            by_method.setdefault(key.method, {}).update(doubts)
+        assessment = self.study.assessment
+        if assessment is not None and assessment.method in by_method:
+            doubts = (
+                *level_warnings(
+                    assessment.averaging,
+                    self.study.longest_record,
+                    levels=self._governing_levels(),
+                ),
+                *few_runs_warnings(self.study.runs, assessment.percentile),
+                *_map_warnings(self.study, assessment.percentile),
+                *assumption_warnings(self.study),
+                *study_doubts(self.study),
+                *(w for case in self.study.cases for w in early_end_warnings(self.study, case)),
+            )
+            by_method[assessment.method].update(dict.fromkeys(doubts))
+        return {method: tuple(found) for method, found in by_method.items()}
+
+    def _governing_levels(self) -> BandSpectra | None:
+        """Return the levels of the assessed cell with the smallest margin."""
+        margins = {
+            key: min((v.margin for v in verdicts if np.isfinite(v.margin)), default=np.inf)
+            for key, verdicts in self.verdicts.items()
+        }
+        if not margins:
+            return None
+        return self.cells[min(margins, key=lambda key: margins[key])].reduced.spectra
+
+
+def _map_warnings(study: Study, percentile: float) -> tuple[FitnessWarning, ...]:
+    """Return the doubt about a map of fewer runs than the study's."""
+    if study.map is None or study.map.runs == study.runs:
+        return ()
+    found = few_runs_warnings(study.map.runs, percentile)
+    return tuple(FitnessWarning(subject="runs of the map", message=w.message) for w in found)
+
+
+def positions_at(result: StudyResult, key: CellKey, time: float) -> dict[str, list[float] | None]:
+    """Return where each vehicle's front axle stands at a time [m]; None off its route.
+
+    Parameters
+    ----------
+    result : StudyResult
+        A finished study.
+    key : CellKey
+        Which cell.
+    time : float
+        Time of the record [s]; NaN gives nothing.
+    """
+    if np.isnan(time):
+        return {}
+    places = {c.route.name: c.front_axle(time) for c in _crossings(result, key)}
+    return {name: None if place is None else list(place) for name, place in places.items()}
+
+
+def wheels_at(result: StudyResult, key: CellKey, time: float) -> dict[str, int]:
+    """Return how many wheels of each vehicle stand on the floor at a time [s]."""
+    return {c.route.name: c.wheels_on_floor(time) for c in _crossings(result, key)}
+
+
+def _crossings(result: StudyResult, key: CellKey) -> tuple[Crossing, ...]:
+    """Return what drives in a cell."""
+    study = result.study
+    case = next(case for case in study.cases if case.name == key.case)
+    method = next(method for method in study.methods if method.name == key.method)
+    return study.crossings(case, key.road, method)

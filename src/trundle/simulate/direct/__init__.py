@@ -1,0 +1,1 @@
+"""Step vehicle and floor in all degrees of freedom."""

@@ -1,0 +1,1 @@
+"""Say where wheels are, and what road is under each."""

@@ -10,13 +10,13 @@ from studies import GOOD
 from trundle.errors import FitnessWarning, InputError
 from trundle.mitigate.changes import Change, each_change, every_combination
 from trundle.mitigate.mitigation import resonance_speeds, try_changes
-from trundle.report.figures_mitigation import NONE, UNKNOWN, strictest
 from trundle.run.whole_study import run_study
 from trundle.signals import Isolator
 from trundle.simulate.fitness import LOST_CONTACT
 from trundle.study_file.build import load_study
 from trundle.units import KMH
 from trundle.vehicle import container_truck_40ft
+from trundle.views.mitigation import NONE, UNKNOWN, strictest
 
 TEXT = GOOD.replace('duration = "4 s"', 'duration = "14 s"')
 

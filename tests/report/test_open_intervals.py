@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from trundle.report.tables import ExactRow
 from trundle.response import percentile_interval
+from trundle.views.tables import ExactRow
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,12 @@
 import numpy as np
 
 from studies import GOOD
-from trundle.report import summary_rows
 from trundle.results.cells import CellKey
 from trundle.run.whole_study import run_study
 from trundle.simulate import Coupled, Decoupled, ensemble
 from trundle.study_file.build import load_study
 from trundle.units import GAL
+from trundle.views.tables import summary_rows
 
 
 def test_every_class_has_the_response_to_its_own_road(tmp_path):

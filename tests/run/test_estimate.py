@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from studies import GOOD, run_main
+from trundle import study_file
 from trundle.cli import afford
 from trundle.dynamics import natural_modes
 from trundle.errors import StudyError
@@ -35,7 +36,7 @@ def study(tmp_path, monkeypatch):
 
 def test_the_number_of_modes_is_weyl_s(study):
     """Two bays in closed form: ``A f sqrt(m / D) / 2`` against all modes of the mesh."""
-    template = Path(estimate.__file__).with_name("template.toml")
+    template = Path(study_file.__file__).with_name("template.toml")
     found = load_study(template)
     (job,) = plan_jobs(found)
     floor = found.floor

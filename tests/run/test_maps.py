@@ -5,13 +5,13 @@ import pytest
 
 from studies import LONG, MAP
 from trundle.errors import StudyError
-from trundle.report.map_data import map_views
 from trundle.results.map_datasets import map_groups
 from trundle.results.maps import MapKey
 from trundle.run.whole_study import run_study
 from trundle.simulate import ensemble
 from trundle.study_file.build import load_study
 from trundle.units import KMH
+from trundle.views.map import map_views
 
 
 def study_of(tmp_path, text):

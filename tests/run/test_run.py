@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 
 from studies import GOOD
-from trundle.report import bound_rows, comparison_rows, write_report
+from trundle.report import write_report
 from trundle.results.cells import CellKey
 from trundle.results.owned import record_owned
 from trundle.results.results_folder import check_target, new_results_folder, uninterrupted
@@ -24,6 +24,7 @@ from trundle.results.store import write_results
 from trundle.results.study_result import positions_at
 from trundle.run.whole_study import run_study
 from trundle.study_file.build import load_study
+from trundle.views.printed import bound_rows, comparison_rows
 
 EXTRA = """
 [[route]]

@@ -17,11 +17,12 @@ from trundle.criteria import VC, Criterion, Shape, find_criterion, shaped
 from trundle.errors import InputError
 from trundle.records import RecordOptions, read_record
 from trundle.records.assess import RecordResult, assess_record, read_simulated
-from trundle.report import record_rows, write_record_report
+from trundle.report import write_record_report
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.signals import Averaging, Record
 from trundle.study_file.user_criteria import read_criteria
 from trundle.units import to_si
+from trundle.views.record import record_rows
 
 __all__ = ["assess"]
 

@@ -16,13 +16,14 @@ from trundle.mitigate.changes import Change, each_change, every_combination
 from trundle.mitigate.estimate import estimate_of_changes
 from trundle.mitigate.mitigation import check_speeds, try_changes
 from trundle.mitigate.sweep import Sweep
-from trundle.report import PARTLY, UNKNOWN, mitigation_rows, write_mitigation_report
+from trundle.report import write_mitigation_report
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.road import CLASS_NAMES
 from trundle.signals import Isolator
 from trundle.study_file.build import load_study
 from trundle.units import KMH, to_si
 from trundle.vehicle import library_vehicle
+from trundle.views.mitigation import PARTLY, UNKNOWN, mitigation_rows
 
 __all__ = ["mitigate"]
 

@@ -6,16 +6,11 @@ import numpy as np
 
 from trundle.cli.screen import print_table
 from trundle.criteria import Verdict
-from trundle.report import (
-    bound_rows,
-    comparison_rows,
-    exact_rows,
-    road_words,
-    summary_rows,
-    verdict_matrix,
-    written,
-)
 from trundle.results.study_result import StudyResult
+from trundle.views.printed import bound_rows, comparison_rows
+from trundle.views.tables import exact_rows, summary_rows
+from trundle.views.verdicts import verdict_matrix
+from trundle.views.words import road_words, written
 
 __all__ = ["print_result"]
 
@@ -32,7 +27,7 @@ def print_result(result: StudyResult) -> None:
     if bounds:
         headings = ("bound", "ours by", "class", "method", "a printed [gal]", "a ours [gal]")
         print_table(
-            "Table 3: upper bounds, ours from medians",
+            _titled(result, "printed_bound", "upper bounds, ours from medians"),
             (*headings, "v printed [um/s]", "v ours [um/s]"),
             (
                 (
@@ -51,6 +46,12 @@ def print_result(result: StudyResult) -> None:
         )
     _print_exact(result)
     _print_verdicts(result)
+
+
+def _titled(result: StudyResult, name: str, title: str) -> str:
+    """Return a table's title, behind the number that the study gives it."""
+    number = result.study.numbering.get(name)
+    return f"{number}: {title}" if number else title[0].upper() + title[1:]
 
 
 def _print_exact(result: StudyResult) -> None:
@@ -86,7 +87,11 @@ def _print_exact(result: StudyResult) -> None:
 def _print_comparison(result: StudyResult) -> None:
     headings = ("road", "class", "method", "a printed [gal]", "a ours [gal]", "falls at")
     print_table(
-        f"Table 2: printed values beside ours, median (5-95 %) of {result.study.runs} runs",
+        _titled(
+            result,
+            "printed",
+            f"printed values beside ours, median (5-95 %) of {result.study.runs} runs",
+        ),
         (*headings, "v printed [um/s]", "v ours [um/s]", "falls at"),
         (
             (

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Generator, Iterable
 from contextlib import contextmanager
-from typing import TypeAlias
 
 from rich.console import Console
 from rich.progress import (
@@ -19,10 +18,10 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-__all__ = ["Tell", "print_table", "progress_bar"]
+from trundle._progress import Tell
 
-Tell: TypeAlias = Callable[[str, float], None]
-"""Told what is being done, and the share done."""
+__all__ = ["print_table", "progress_bar"]
+
 
 _PIPE_WIDTH = 150  # tables are cut to pieces on a narrow pipe
 

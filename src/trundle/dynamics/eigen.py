@@ -5,7 +5,6 @@ Large sparse systems are taken slice by slice (`dynamics.lanczos`), small ones w
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +13,7 @@ from scipy import linalg, sparse
 from threadpoolctl import threadpool_limits
 
 from trundle._checks import positive
+from trundle._progress import Progress
 from trundle._typing import Array, Matrix, SparseMatrix
 from trundle.dynamics.lanczos import EigenSlice, march
 from trundle.dynamics.sparse_solver import factorise
@@ -88,7 +88,7 @@ def natural_modes(
     f_max: float,
     backend: str | None = None,
     allow_rigid: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Modes:
     """Find every natural mode below a frequency.
 
@@ -159,7 +159,7 @@ def _sparse(
     stiffness: SparseMatrix,
     f_max: float,
     backend: str | None,
-    progress: Callable[[float], None] | None,
+    progress: Progress | None,
 ) -> tuple[Array, Array, Array]:
     """Return eigenvalues, shapes and residuals."""
     wanted = count_modes_below(mass, stiffness, f_max, backend=backend)

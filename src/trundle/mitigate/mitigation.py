@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trundle._progress import Tell, silent
 from trundle.criteria import assess_reduced, spectra_asked_for
 from trundle.dynamics import Modes, repeatable
 from trundle.errors import InputError
@@ -48,7 +49,7 @@ def try_changes(
     speeds: Sequence[float],
     roads: Sequence[str],
     runs: int,
-    report: Callable[[str, float], None] | None = None,
+    report: Tell | None = None,
 ) -> Sweep:
     """Run every combination of changes, speeds and road classes, and hold it against the criteria.
 
@@ -74,7 +75,7 @@ def try_changes(
         if times > 1:
             raise InputError(f"{times} changes are called {label!r}; give each a name of its own")
     check_speeds(study, speeds)
-    tell = report or (lambda _what, _share: None)
+    tell = report or silent
     alike = sharing_runs(changes)
     total, done = len(alike) * len(speeds) * len(study.cases), 0
     found: dict[tuple[str, float, str], list[Outcome]] = {}

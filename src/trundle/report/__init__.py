@@ -1,32 +1,7 @@
-"""Draw figures and write the report of a study."""
+"""Draw figures and write reports."""
 
-from trundle.report.figures_mitigation import UNKNOWN
-from trundle.report.mitigation_page import PARTLY, mitigation_rows, write_mitigation_report
-from trundle.report.page import write_report
-from trundle.report.record_page import record_rows, write_record_report
-from trundle.report.tables import (
-    bound_rows,
-    comparison_rows,
-    exact_rows,
-    road_words,
-    summary_rows,
-    verdict_matrix,
-    written,
-)
+from trundle.report.pages.mitigation import write_mitigation_report
+from trundle.report.pages.record import write_record_report
+from trundle.report.pages.study import write_report
 
-__all__ = [
-    "PARTLY",
-    "UNKNOWN",
-    "bound_rows",
-    "comparison_rows",
-    "exact_rows",
-    "mitigation_rows",
-    "record_rows",
-    "road_words",
-    "summary_rows",
-    "verdict_matrix",
-    "write_mitigation_report",
-    "write_record_report",
-    "write_report",
-    "written",
-]
+__all__ = ["write_mitigation_report", "write_record_report", "write_report"]

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from matplotlib import colormaps, rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
-__all__ = ["COLOURS", "STYLE", "Picture", "make_logarithmic", "new_figure", "save"]
+__all__ = ["COLOURS", "STYLE", "Drawing", "class_colours", "make_logarithmic", "new_figure"]
 
 # Okabe and Ito's palette (2008), told apart by nearly everybody.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F")
@@ -35,8 +39,8 @@ STYLE: dict[Any, Any] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Picture:
-    """Hold a finished figure for the report.
+class Drawing:
+    """Hold what can be drawn for a page.
 
     Attributes
     ----------
@@ -46,11 +50,21 @@ class Picture:
         Heading.
     caption : str
         What is seen, and what it was computed from.
+    draw : callable
+        Draws it.
     """
 
     name: str
     title: str
     caption: str
+    draw: Callable[[], Figure]
+
+    def save(self, folder: Path) -> None:
+        """Draw it, and write ``NAME.png`` and ``NAME.svg`` into a folder."""
+        with rc_context(STYLE):
+            figure = self.draw()
+            figure.savefig(folder / f"{self.name}.png", dpi=130)
+            figure.savefig(folder / f"{self.name}.svg", metadata={"Date": None})
 
 
 def new_figure(
@@ -75,7 +89,6 @@ def make_logarithmic(axes: Axes, which: str) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
-def save(figure: Figure, folder: Path, name: str) -> None:
-    """Write a figure as PNG and SVG, inside the style in which it was drawn."""
-    figure.savefig(folder / f"{name}.png", dpi=130)
-    figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
+def class_colours(n: int) -> list[str]:
+    """Return a colour for each of n classes: grey for not assessed, dark where little may stand."""
+    return ["#d9d9d9", *(to_hex(shade) for shade in colormaps["cividis"](np.linspace(0, 1, n - 1)))]

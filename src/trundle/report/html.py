@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeAlias
 
-import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from trundle.criteria import Verdict
-from trundle.report.canvas import Picture
-from trundle.report.tables import written
-from trundle.signals import nominal_frequency
+from trundle._progress import Tell, silent
+from trundle.report.canvas import Drawing
+from trundle.views.words import between, hertz, rank, written
 
-__all__ = ["embedded", "template"]
+__all__ = ["Picture", "embedded", "template"]
+
+Picture: TypeAlias = dict[str, str]
+"""Name, title, caption and data of a picture."""
 
 
 def template(name: str) -> Template:
@@ -26,41 +29,36 @@ def template(name: str) -> Template:
         lstrip_blocks=True,
     )
     environment.filters["sig"] = written
-    environment.filters["rank"] = _rank
-    environment.filters["between"] = _between
-    environment.filters["hertz"] = _hertz
+    environment.filters["rank"] = rank
+    environment.filters["between"] = between
+    environment.filters["hertz"] = hertz
     return environment.get_template(name)
 
 
-def embedded(picture: Picture, figures: Path) -> dict[str, str]:
-    """Return a finished picture as a page takes it, its data inside."""
-    png = (figures / f"{picture.name}.png").read_bytes()
-    return {
-        "name": picture.name,
-        "title": picture.title,
-        "caption": picture.caption,
-        "data": base64.b64encode(png).decode("ascii"),
-    }
+def embedded(drawings: Sequence[Drawing], figures: Path, *, tell: Tell = silent) -> list[Picture]:
+    """Draw into a new folder, and return the pictures as a page takes them, their data inside.
 
-
-def _between(verdict: Verdict) -> str:
-    """Write a margin with its interval."""
-    low, high = verdict.interval
-    if not np.isfinite(low) or not np.isfinite(high):
-        return f"{verdict.margin:.3g}"
-    between = f"{low:.3g}-{high:.3g}" if low > 0.0 else f"at most {high:.3g}"
-    return f"{verdict.margin:.3g} ({between})"
-
-
-def _hertz(f: float) -> str:
-    """Write a mid-band frequency by its name; nothing for a single number."""
-    return f"{nominal_frequency(f):g}" if np.isfinite(f) else ""
-
-
-def _rank(value: float) -> str:
-    """Name a percentile; below the lowest run it is 'below all', above the highest 'above all'."""
-    if value <= 0.0:
-        return "below all"
-    if value >= 100.0:
-        return "above all"
-    return f"{value:.0f} %"
+    Parameters
+    ----------
+    drawings : sequence of Drawing
+        What is drawn.
+    figures : Path
+        The folder.
+    tell : callable, optional
+        Told which figure is drawn, and the share drawn.
+    """
+    figures.mkdir()
+    pictures: list[Picture] = []
+    for number, drawing in enumerate(drawings):
+        tell(f"figure: {drawing.title}", number / len(drawings))
+        drawing.save(figures)
+        png = (figures / f"{drawing.name}.png").read_bytes()
+        pictures.append(
+            {
+                "name": drawing.name,
+                "title": drawing.title,
+                "caption": drawing.caption,
+                "data": base64.b64encode(png).decode("ascii"),
+            }
+        )
+    return pictures

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -11,6 +10,7 @@ from jaxtyping import Bool, Complex, Float
 from scipy import fft, signal
 
 from trundle._checks import one_of
+from trundle._progress import Progress
 from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.signals import (
@@ -85,7 +85,7 @@ def floor_map(
     averaging: Averaging = "max_1s",
     peaks: bool = True,
     every_step: bool = False,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> FloorMap:
     """Map the response to contact forces over a floor.
 

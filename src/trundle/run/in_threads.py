@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 
+from trundle._progress import Tell
 from trundle._threads import n_threads
 from trundle.dynamics import repeatable
 from trundle.results.pieces import Piece
@@ -25,7 +26,7 @@ def compute_here(
     lay_out: Callable[[Job], LaidOut],
     *,
     begin: Callable[[Job], None],
-    progress: Callable[[str, float], None],
+    progress: Tell,
     done: Callable[[str, Piece], None],
 ) -> None:
     """Compute parts, some at once, and hand over what each leaves.

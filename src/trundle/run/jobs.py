@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trundle._progress import Progress
 from trundle.criteria import spectra_asked_for
 from trundle.dynamics import Modal
 from trundle.response import (
@@ -36,7 +37,6 @@ from trundle.study.model import Case, MethodPlan, Study
 
 __all__ = ["Job", "LaidOut", "compute", "lay_out_job", "plan_jobs"]
 
-Progress = Callable[[float], None]
 
 _WAVES = 400  # shared among the roads of a case: 800 runs' worth; fewer miss sharp answers
 

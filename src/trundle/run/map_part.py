@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
+from trundle._progress import Progress
 from trundle._typing import Array
 from trundle.criteria import class_map
 from trundle.response import floor_map
@@ -24,7 +25,7 @@ def map_piece(
     factors: Sequence[float],
     seed: int,
     *,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Piece:
     """Map a case on every road, and keep what is drawn of it."""
     forces, mean = contact_force_histories(layout, runs=range(plan.runs), seed=seed)

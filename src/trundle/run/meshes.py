@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
+from trundle._progress import Tell, silent
 from trundle._typing import Array
 from trundle.response import BandSpectra
-from trundle.run.progress import Report
 from trundle.run.whole_study import run_study
 from trundle.signals import mid_band_frequencies
 from trundle.structure import build_floor
@@ -77,7 +77,7 @@ def on_two_meshes(study: Study) -> tuple[Study, Study]:
     return small, replace(small, floor=build_floor(study.plan, mesh_size=half), mesh_size=half)
 
 
-def compare_meshes(study: Study, *, report: Report | None = None) -> MeshComparison:
+def compare_meshes(study: Study, *, report: Tell | None = None) -> MeshComparison:
     """Compute a study's first case on its mesh and on half of it.
 
     Parameters
@@ -92,7 +92,7 @@ def compare_meshes(study: Study, *, report: Report | None = None) -> MeshCompari
     MeshComparison
         Of the first case on the first road, by the method that carries the verdict, or the first.
     """
-    tell = report or (lambda _what, _share: None)
+    tell = report or silent
     both = on_two_meshes(study)
     spectra: list[BandSpectra] = []
     whole = np.ones(len(mid_band_frequencies()), dtype=bool)

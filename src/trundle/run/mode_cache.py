@@ -5,20 +5,19 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
 import numpy as np
 
+from trundle._progress import Progress
 from trundle.dynamics import Modes, available_backends, count_modes_below, natural_modes
 from trundle.run.kept import stored_as_they_are
 from trundle.structure import Floor
 
 __all__ = ["cache_folder", "has_modes", "modes_of"]
 
-Progress = Callable[[float], None]
 
 _SUMS = 3  # sums of all modes by which kept ones are tried
 _OFF = 1e-6  # relative, that such a sum may be off

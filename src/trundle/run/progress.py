@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable, Mapping
-from typing import TypeAlias
+from collections.abc import Iterable, Mapping
 
+from trundle._progress import Tell
 from trundle.run.jobs import Job
 
-__all__ = ["Bar", "Report"]
-
-Report: TypeAlias = Callable[[str, float], None]
-"""Told what is being done, and the share of the whole study that is done (0 to 1)."""
+__all__ = ["Bar"]
 
 
 class Bar:
     """Tell the share of a study that is done, by what each part costs; from any thread."""
 
-    def __init__(self, tell: Report, base: float, costs: Mapping[str, float]) -> None:
+    def __init__(self, tell: Tell, base: float, costs: Mapping[str, float]) -> None:
         self._tell, self._base = tell, base
         self._costs = dict(costs)
         self._label = ""

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from trundle._kinds import kinds_checked
+from trundle._progress import Tell, silent
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import InputError
@@ -18,7 +19,7 @@ from trundle.run.estimate import shares_of
 from trundle.run.in_threads import compute_here
 from trundle.run.jobs import Job, lay_out_job, plan_jobs
 from trundle.run.mode_cache import modes_of
-from trundle.run.progress import Bar, Report
+from trundle.run.progress import Bar
 from trundle.run.scale_out import Cluster
 from trundle.run.unfinished import InMemory, PieceStore
 from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
@@ -32,7 +33,7 @@ __all__ = ["run_study"]
 def run_study(
     study: Study,
     *,
-    report: Report | None = None,
+    report: Tell | None = None,
     store: PieceStore | None = None,
     cluster: Cluster | None = None,
 ) -> StudyResult:
@@ -54,7 +55,7 @@ def run_study(
     StudyResult
         Reduced results; the same study gives the same bits, whatever computes it.
     """
-    tell = report or (lambda _what, _share: None)
+    tell = report or silent
     store = store if store is not None else InMemory()
     jobs = plan_jobs(study)
     share, costs = shares_of(study, jobs)
@@ -170,7 +171,7 @@ def _keys(study: Study) -> Iterator[CellKey]:
                 yield CellKey(case.name, road, method.name)
 
 
-def _all_modes(study: Study, tell: Report) -> Modes | None:
+def _all_modes(study: Study, tell: Tell) -> Modes | None:
     """Find the modes once, as far as the most demanding method needs them."""
     f_max = max(
         (

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import count
 from trundle._kinds import kinds_checked
+from trundle._progress import Progress
 from trundle._typing import Array
 from trundle.simulate.crossing import Crossing, Integration, Interaction
 from trundle.simulate.direct.march import Record
@@ -29,7 +30,6 @@ __all__ = [
     "runs_with_mean",
 ]
 
-Progress = Callable[[float], None]
 
 _BATCH_BYTES = 400e6  # histories and roads held at once
 LEAST_BATCH = 16  # runs held at once however long their histories are

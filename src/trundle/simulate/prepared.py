@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from trundle._kinds import kinds_checked
+from trundle._progress import Progress
 from trundle.dynamics import (
     Damping,
     LinearSystem,
@@ -25,8 +25,6 @@ from trundle.simulate.modal.residual import StaticFlexibility
 from trundle.structure import Floor
 
 __all__ = ["PreparedFloor", "prepare"]
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -184,6 +184,12 @@ class Study:
         What is mapped over the floor.
     printed, printed_bounds, notes : tuple
         Published values to hold beside ours, and notes.
+    numbering : mapping of str to str
+        Numbers that figures and tables bear in a publication, by their names in the report.
+    force_speeds : tuple of float
+        Speeds at which axle forces are drawn beside those of the routes [m/s].
+    sources : tuple of str
+        Publications that the study draws on.
     """
 
     title: str
@@ -209,6 +215,9 @@ class Study:
     printed: tuple[Printed, ...]
     printed_bounds: tuple[PrintedBound, ...]
     notes: tuple[Note, ...]
+    numbering: Mapping[str, str]
+    force_speeds: tuple[float, ...]
+    sources: tuple[str, ...]
 
     def crossings(self, case: Case, road: str, method: MethodPlan) -> tuple[Crossing, ...]:
         """Return the crossings of one cell."""

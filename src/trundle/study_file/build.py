@@ -107,6 +107,7 @@ class _Builder:
         if floor is None:
             return None
         general = file.general
+        publication = file.tables.get("publication") or schema.PublicationSection()
         singles = tuple(Case(name=name, routes=(name,)) for name in drives)
         traffic = tuple(Case(name=t.name, routes=t.routes) for t in file.items("traffic"))
         return Study(
@@ -133,6 +134,9 @@ class _Builder:
             printed=tuple(Printed(**dict(p)) for p in file.items("printed")),
             printed_bounds=tuple(PrintedBound(**dict(p)) for p in file.items("printed_bound")),
             notes=tuple(Note(**dict(n)) for n in file.items("note")),
+            numbering=publication.numbers,
+            force_speeds=publication.force_speeds,
+            sources=publication.sources,
         )
 
     def _try(self, place: str, make: Callable[[], T], remedy: str = "") -> T | None:

@@ -25,6 +25,7 @@ _TABLES: dict[str, Any] = {
     "roughness": schema.RoughnessSection,
     "criteria": schema.CriteriaSection,
     "map": schema.MapSection,
+    "publication": schema.PublicationSection,
 }
 _NAMED_TABLES: dict[str, Any] = {"vehicle": schema.VehicleSection}
 _LISTS: dict[str, Any] = {
@@ -54,7 +55,7 @@ class StudyFile:
     general : GeneralSection or None
         The keys above the first table.
     tables : dict of str to Section
-        ``floor``, ``roughness``, ``criteria``, ``map``.
+        ``floor``, ``roughness``, ``criteria``, ``map``, ``publication``.
     vehicles : dict of str to Section
         Vehicle sections by name.
     lists : dict of str to list of (int, Section)

@@ -53,6 +53,7 @@ __all__ = [
     "PointSection",
     "PrintedBoundSection",
     "PrintedSection",
+    "PublicationSection",
     "ReferenceFloorSection",
     "RoadSection",
     "RoughnessSection",
@@ -311,6 +312,14 @@ class PrintedBoundSection(Section):
     method: Name
     peak_acceleration: Acceleration
     rms_velocity: Speed
+
+
+class PublicationSection(Section):
+    """What a publication says of this study: numbers of its figures and tables, its sources."""
+
+    numbers: dict[Name, Line] = Field(default_factory=dict[Name, Line])
+    force_speeds: Annotated[tuple[Speed, ...], Field(max_length=10)] = ()
+    sources: tuple[Line, ...] = ()
 
 
 class NoteSection(Section):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 from scipy import linalg
 
+from trundle._progress import Progress
 from trundle._typing import Array
 from trundle.dynamics import Motion, Propagator, State
 from trundle.errors import UnstableStepError
@@ -26,8 +26,6 @@ __all__ = [
     "run_in",
     "static_start",
 ]
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

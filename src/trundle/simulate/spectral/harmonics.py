@@ -7,13 +7,14 @@ as a cosine and a sine of the amplitude that the spectrum gives it. No sampling 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Complex, Float
 
 from trundle._checks import count
+from trundle._progress import Progress
 from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.errors import InputError
@@ -26,8 +27,6 @@ from trundle.simulate.wheels.roads import RoadUnderWheels, roads_under_wheels
 from trundle.simulate.wheels.timeline import columns_of, contact_springs
 
 __all__ = ["Harmonics", "Waves", "harmonics", "mean_response", "place_waves"]
-
-Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -17,6 +17,7 @@ from jaxtyping import Complex, Float
 from scipy import fft
 from threadpoolctl import ThreadpoolController
 
+from trundle._progress import Progress
 from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import (
@@ -47,7 +48,7 @@ def place_spectra(
     forces: Float[Array, "steps contacts runs"],
     *,
     acceleration: bool,
-    progress: Callable[[float], None] | None = None,
+    progress: Progress | None = None,
 ) -> Iterator[Answer]:
     """Give spectra of velocity, and of acceleration, some places and runs at a time.
 

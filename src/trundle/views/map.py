@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
-from matplotlib import colormaps
-from matplotlib.colors import to_hex
 
 from trundle._typing import Array
 from trundle.criteria import ClassMap, envelope_of
@@ -18,7 +16,7 @@ from trundle.results.study_result import StudyResult
 from trundle.signals import nominal_frequency
 from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
 
-__all__ = ["MapView", "class_ranks", "class_scale", "map_payload", "map_views"]
+__all__ = ["MapView", "class_names", "class_ranks", "map_payload", "map_views"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,12 +89,9 @@ def _worst(result: StudyResult, maps: list[StudyMap], title: str) -> MapView:
     )
 
 
-def class_scale(classes: ClassMap) -> tuple[list[str], list[str]]:
-    """Return names and colours: grey where nothing is assessed, dark where little may stand."""
-    names = [classes.criteria[i].title for i in classes.order()]
-    shades = colormaps["cividis"](np.linspace(0.0, 1.0, len(names) + 1))
-    none, *others = (to_hex(shade) for shade in shades)
-    return ["not assessed", "none", *names], ["#d9d9d9", none, *others]
+def class_names(classes: ClassMap) -> list[str]:
+    """Return what each rank of `class_ranks` is called."""
+    return ["not assessed", "none", *(classes.criteria[i].title for i in classes.order())]
 
 
 def class_ranks(classes: ClassMap) -> Int[Array, " places"]:
@@ -111,13 +106,11 @@ def map_payload(result: StudyResult) -> dict[str, Any]:
     if plan is None or not result.maps:
         return {}
     views = map_views(result)
-    names, colours = class_scale(views[0].classes)
     shape = (len(plan.y), len(plan.x))
     return {
         "x": _short(plan.x),
         "y": _short(plan.y),
-        "names": names,
-        "colours": colours,
+        "names": class_names(views[0].classes),
         "criterion": plan.criterion,
         "views": [_view(result, view, shape) for view in views],
         "routes": [

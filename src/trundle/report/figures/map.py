@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
@@ -12,28 +14,74 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
-from trundle.report.canvas import COLOURS, new_figure
-from trundle.report.map_data import MapView, class_ranks, class_scale
+from trundle.report.canvas import COLOURS, Drawing, class_colours, new_figure
+from trundle.results.study_result import StudyResult
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Study
 from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.views.map import MapView, class_names, class_ranks, map_views
 
-__all__ = [
-    "class_map_figure",
-    "criterion_map_figure",
-    "peak_map_figure",
-    "rms_map_figure",
-    "share_map_figure",
-]
+__all__ = ["drawings"]
 
 _COLUMNS = 4
+
+
+def drawings(result: StudyResult) -> Iterator[Drawing]:
+    """Give the maps of a result; those of single vehicles at other speeds stand on the page.
+
+    Yields
+    ------
+    Drawing
+        One after the other, as they stand on the page.
+    """
+    plan, study = result.study.map, result.study
+    if plan is None or not result.maps:
+        return
+    views = [view for view in map_views(result) if view.printed]
+    about = (
+        f"{len(plan.places)} places, level that {plan.percentile:g} % of {plan.runs} runs stay "
+        f"below, averaging {plan.averaging}; a cell shows the place at its middle. "
+        "Routes dashed, points crossed, columns grey."
+    )
+    yield Drawing(
+        name="map_classes",
+        title="Class map",
+        caption=f"Strictest criterion met. {about}",
+        draw=lambda: class_map_figure(study, views),
+    )
+    yield Drawing(
+        name="map_margin",
+        title=f"Margin to {plan.criterion}",
+        caption=about,
+        draw=lambda: criterion_map_figure(study, views),
+    )
+    yield Drawing(
+        name="map_share",
+        title=f"Share of runs above {plan.criterion}",
+        caption=about,
+        draw=lambda: share_map_figure(study, views),
+    )
+    yield Drawing(
+        name="map_rms",
+        title="RMS velocity over the floor",
+        caption=about,
+        draw=lambda: rms_map_figure(study, views),
+    )
+    if plan.peaks:
+        yield Drawing(
+            name="map_peak",
+            title="Peak acceleration over the floor",
+            caption=about,
+            draw=lambda: peak_map_figure(study, views),
+        )
 
 
 def class_map_figure(study: Study, views: list[MapView]) -> Figure:
     """Draw the strictest velocity criterion that is passed at every place of every view."""
     plan = study.map
     assert plan is not None  # there are views
-    names, colours = class_scale(views[0].classes)
+    names = class_names(views[0].classes)
+    colours = class_colours(len(names))
     figure, panels = _panels(study, views)
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     for panel, view in zip(panels, views, strict=True):

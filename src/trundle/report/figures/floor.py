@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -14,17 +14,57 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from trundle._typing import Array
 from trundle.dynamics import Modes
-from trundle.report.canvas import COLOURS, new_figure
+from trundle.report.canvas import COLOURS, Drawing, new_figure
+from trundle.results.study_result import StudyResult
 from trundle.route import Route
 from trundle.structure import Floor, FloorPlan
 
-__all__ = ["mesh_figure", "modes_figure", "plan_figure", "section_figure"]
+__all__ = ["drawings"]
+
+
+def drawings(result: StudyResult) -> Iterator[Drawing]:
+    """Give the plan, the section, the mesh, and the first modes where there are any.
+
+    Yields
+    ------
+    Drawing
+        One after the other, as they stand on the page.
+    """
+    study, modes = result.study, result.modes
+    yield Drawing(
+        name="plan",
+        title="Plan with routes and points",
+        caption="Beams (grey), secondary beams (dashed), columns (squares), routes with their "
+        "direction and speed, and the points where the response is read.",
+        draw=lambda: plan_figure(
+            study.plan, {n: d.route for n, d in study.drives.items()}, study.points
+        ),
+    )
+    yield Drawing(
+        name="section",
+        title="Section",
+        caption="Section along y: slab, beams, columns above and below.",
+        draw=lambda: section_figure(study.plan),
+    )
+    yield Drawing(
+        name="mesh",
+        title="Finite-element model",
+        caption="Shells (blue), beams at their centroids (dark), columns (orange).",
+        draw=lambda: mesh_figure(study.floor),
+    )
+    if modes is not None:
+        yield Drawing(
+            name="modes",
+            title="First modes of the floor",
+            caption="Vertical motion of the slab, red up and blue down.",
+            draw=lambda: modes_figure(study.floor, modes),
+        )
 
 
 def plan_figure(
     plan: FloorPlan, routes: Mapping[str, Route], points: Mapping[str, tuple[float, float]]
 ) -> Figure:
-    """Draw the plan with beams, columns, routes and points (Figure 8)."""
+    """Draw the plan with beams, columns, routes and points."""
     (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
     figure, (axes,) = new_figure(5.6, 1.2 + 5.0 * (y1 - y0) / (x1 - x0))
     _draw_beams(axes, plan)
@@ -100,7 +140,7 @@ def _draw_edges(axes: Axes, plan: FloorPlan) -> None:
 
 
 def section_figure(plan: FloorPlan) -> Figure:
-    """Draw the section along y with slab, beams and columns (Figure 9)."""
+    """Draw the section along y with slab, beams and columns."""
     figure, (axes,) = new_figure(7.2, 2.9)
     y0, y1 = plan.y_extent
     half = 0.5 * plan.slab.thickness
@@ -134,7 +174,7 @@ def _edges(elements: Array) -> Array:
 
 
 def mesh_figure(floor: Floor) -> Figure:
-    """Draw the finite-element mesh in perspective (Figure 10)."""
+    """Draw the finite-element mesh in perspective."""
     figure = Figure(figsize=(7.2, 5.4), layout="constrained")
     axes = figure.add_subplot(projection="3d")
     for group in floor.shells:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 from textwrap import fill
 
@@ -14,30 +14,41 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from trundle.mitigate.sweep import Outcome, Sweep
-from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
+from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
 from trundle.units import KMH
+from trundle.views.mitigation import NONE, PARTLY, UNKNOWN, middle_curve, strictest
 
-__all__ = ["NONE", "UNKNOWN", "class_matrix_figure", "speed_figure", "strictest"]
-
-NONE, UNKNOWN = "none", "not assessed"
-"""What stands where no criterion is met, and where it is not known whether one is."""
+__all__ = ["drawings"]
 
 _FEW = 4  # changes, that have a panel each in a matrix and a line each in curves
 _STYLES = ("-", "--", ":", "-.")
 
 
-def strictest(outcome: Outcome, point: str) -> str:
-    """Return the title of the strictest velocity criterion that is passed at a point, if any."""
-    some = [
-        v
-        for v in outcome.verdicts
-        if v.point == point and v.criterion.quantity == "band_rms_velocity"
-    ]
-    passed = [v for v in some if v.status == "pass"]
-    best = min(passed, key=lambda v: float(v.criterion.limits.min()), default=None)
-    if best is not None:
-        return best.criterion.title
-    return UNKNOWN if any(v.status == "not assessed" for v in some) else NONE
+def drawings(sweep: Sweep) -> Iterator[Drawing]:
+    """Give what is met at every point, and the level there against speed.
+
+    Yields
+    ------
+    Drawing
+        One after the other, as they stand on the page.
+    """
+    curve = middle_curve(sweep)
+    for i, point in enumerate(sweep.study.points):
+        yield Drawing(
+            name=f"matrix_{i + 1}",
+            title=f"Strictest criterion met, {point}",
+            caption=f"By speed and road class, for every change and case. {PARTLY}.",
+            draw=lambda point=point: class_matrix_figure(sweep, point),
+        )
+        if curve:
+            yield Drawing(
+                name=f"speed_{i + 1}",
+                title=f"Level against speed, {point}",
+                caption=f"Level over the limit of {curve}, where it is nearest; above 1 it fails. "
+                "Dotted: speeds at which axles pass at the floor's first frequency, a half or a "
+                "third of it.",
+                draw=lambda point=point: speed_figure(sweep, point, curve),
+            )
 
 
 def class_matrix_figure(sweep: Sweep, point: str) -> Figure:

@@ -2,17 +2,43 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.figure import Figure
 
-from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
+from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
+from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, FITTED_RANGE, RoadClass, RoughnessBand, synthesise
 
-__all__ = ["profiles_figure", "roughness_figure"]
+__all__ = ["drawings"]
+
+
+def drawings(result: StudyResult) -> Iterator[Drawing]:
+    """Give the spectra of all classes, and a profile of some.
+
+    Yields
+    ------
+    Drawing
+        One after the other, as they stand on the page.
+    """
+    study = result.study
+    yield Drawing(
+        name="roughness",
+        title="Road roughness of ISO 8608",
+        caption="Displacement PSD of classes A to H: geometric mean (line) and limits (band).",
+        draw=roughness_figure,
+    )
+    yield Drawing(
+        name="profiles",
+        title="Profiles of classes A to D",
+        caption=f"One realisation at the classes' upper limits, {study.band}.",
+        draw=lambda: profiles_figure(study.band, study.seed),
+    )
 
 
 def roughness_figure() -> Figure:
-    """Draw Gd(n) of the eight classes with their limits (the paper's Figure 2)."""
+    """Draw Gd(n) of the eight classes with their limits."""
     figure, (axes,) = new_figure(7.2, 4.2)
     n = np.array([0.01, 10.0])
     for i, name in enumerate(CLASS_NAMES):
@@ -40,7 +66,7 @@ def roughness_figure() -> Figure:
 
 
 def profiles_figure(band: RoughnessBand, seed: int, *, length: float = 100.0) -> Figure:
-    """Draw one profile of classes A to D, upper limits, one phase set (Figure 3)."""
+    """Draw one profile of classes A to D, upper limits, one phase set."""
     figure, (axes,) = new_figure(7.2, 3.2)
     for i, name in enumerate("DCBA"):
         profile = synthesise(

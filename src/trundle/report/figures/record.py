@@ -2,16 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from matplotlib.figure import Figure
 
 from trundle.records.assess import RecordResult
-from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
-from trundle.report.figures_response import draw_criterion, rule_name
+from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
+from trundle.report.figures.response import draw_criterion
 from trundle.signals import running_rms
 from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.views.words import rule_name
 
-__all__ = ["record_history_figure", "record_spectra_figure"]
+__all__ = ["drawings"]
+
+
+def drawings(result: RecordResult) -> Iterator[Drawing]:
+    """Give the spectra on the criteria, and the motion in time.
+
+    Yields
+    ------
+    Drawing
+        One after the other, as they stand on the page.
+    """
+    yield Drawing(
+        name="spectra",
+        title="Velocity spectra on criteria",
+        caption="RMS velocity in one-third octaves of every channel.",
+        draw=lambda: record_spectra_figure(result),
+    )
+    yield Drawing(
+        name="history",
+        title="Motion in time",
+        caption=f"Velocity and acceleration above {result.high_pass:g} Hz.",
+        draw=lambda: record_history_figure(result),
+    )
+
 
 _MOST_CHANNELS = 6
 _MOST_SIMULATED = 6

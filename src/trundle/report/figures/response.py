@@ -2,49 +2,115 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trundle.criteria import Criterion
-from trundle.report.canvas import COLOURS, make_logarithmic, new_figure
-from trundle.report.tables import ComparisonRow
+from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
-from trundle.signals import Averaging
+from trundle.study.model import Assessment
 from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.views.printed import ComparisonRow, comparison_rows
+from trundle.views.words import rule_name
 
-__all__ = [
-    "acceleration_criteria_figure",
-    "comparison_figure",
-    "draw_criterion",
-    "history_figure",
-    "rule_name",
-    "velocity_criteria_figure",
-]
+__all__ = ["draw_criterion", "drawings"]
 
 
-def history_figure(
-    result: StudyResult, case: str, road: str, methods: Sequence[str], point: str
-) -> Figure:
-    """Draw the first run's acceleration by each method (Figures 11 to 15)."""
-    figure, axes = new_figure(7.2, 1.6 * len(methods) + 0.4, rows=len(methods), share="x")
-    i = list(result.study.points).index(point)
-    for number, (panel, method) in enumerate(zip(axes, methods, strict=True)):
+def drawings(result: StudyResult) -> Iterator[Drawing]:
+    """Give histories, levels on criteria, and ranges beside published values.
+
+    Yields
+    ------
+    Drawing
+        One after the other, as they stand on the page.
+    """
+    yield from _histories(result)
+    study = result.study
+    if study.assessment is not None:
+        yield from _criteria(result, study.assessment)
+    rows = comparison_rows(result)
+    if rows:
+        yield Drawing(
+            name="comparison",
+            title="Published values on our ranges",
+            caption="Median (dot) and 5-95 % (bar) of our runs; crosses are published values.",
+            draw=lambda: comparison_figure(rows),
+        )
+
+
+def _histories(result: StudyResult) -> Iterator[Drawing]:
+    """Give the first run of every case at every point, by each method on each road."""
+    study = result.study
+    for (i, case), (j, point) in itertools.product(enumerate(study.cases), enumerate(study.points)):
+        together = len(case.routes) > 1
+        what = "several vehicles at once" if together else f"route {case.name}"
+        yield Drawing(
+            name=f"history_{i + 1}" + (f"_{j + 1}" if j else ""),
+            title=f"Acceleration at {point}: {what}",
+            caption="First realisation by each method, on the same road.",
+            draw=lambda name=case.name, point=point: history_figure(result, name, point),
+        )
+
+
+def _criteria(result: StudyResult, assessment: Assessment) -> Iterator[Drawing]:
+    """Give peaks and levels of every point on the curves, the levels for each road."""
+    study, method = result.study, assessment.method
+    quantities = {c.quantity for c in assessment.criteria}
+    for j, point in enumerate(study.points):
+        end = f"_{j + 1}" if j else ""
+        if "peak_acceleration" in quantities:
+            yield Drawing(
+                name=f"criteria_acceleration{end}",
+                title=f"Peak acceleration at {point} against equipment limits",
+                caption="Zero-to-peak limits of precision equipment.",
+                draw=lambda point=point: acceleration_criteria_figure(result, method, point),
+            )
+        for k, road in enumerate(study.roads):
+            yield Drawing(
+                name=f"criteria_velocity_{k + 1}{end}",
+                title=f"Velocity spectra at {point} against criteria, class {road}",
+                caption="One-third-octave RMS velocity on the generic criteria.",
+                draw=lambda road=road, point=point: velocity_criteria_figure(
+                    result, road, method, point
+                ),
+            )
+
+
+def history_figure(result: StudyResult, case: str, point: str) -> Figure:
+    """Draw the first run's acceleration, a row a method, a column a road."""
+    study = result.study
+    roads, methods = list(study.roads), [method.name for method in study.methods]
+    figure, axes = new_figure(
+        max(7.2, 3.6 * len(roads)),
+        1.6 * len(methods) + 0.4,
+        rows=len(methods),
+        columns=len(roads),
+        share="x",
+    )
+    i = list(study.points).index(point)
+    for panel, (method, road) in zip(axes, itertools.product(methods, roads), strict=True):
         history = result.cells[CellKey(case, road, method)].history
         values = history.acceleration[:, i] / GAL
-        panel.plot(history.time, values, color=COLOURS[number], linewidth=0.8)
-        peak = np.abs(values).max()
-        panel.set(ylabel="a [gal]", xlim=(0.0, history.time[-1]))
-        panel.set_title(f"{method}: peak {peak:.3g} gal", loc="left", fontsize=9)
-    axes[-1].set_xlabel("time [s]")
+        colour = COLOURS[methods.index(method) % len(COLOURS)]
+        panel.plot(history.time, values, color=colour, linewidth=0.8)
+        panel.set(xlim=(0.0, history.time[-1]))
+        panel.set_title(
+            f"{method}, class {road}: peak {np.abs(values).max():.3g} gal", loc="left", fontsize=8
+        )
+    for panel in axes[:: len(roads)]:
+        panel.set_ylabel("a [gal]")
+    for panel in axes[-len(roads) :]:
+        panel.set_xlabel("time [s]")
     return figure
 
 
 def velocity_criteria_figure(result: StudyResult, road: str, method: str, point: str) -> Figure:
-    """Draw band levels of every case on the velocity criteria (Figure 17)."""
+    """Draw band levels of every case on the velocity criteria."""
     figure, (axes,) = new_figure(7.2, 4.6)
     criteria = result.study.assessment.criteria if result.study.assessment else ()
     for criterion in criteria:
@@ -85,17 +151,6 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     return figure
 
 
-def rule_name(averaging: Averaging) -> str:
-    """Return an averaging rule in words."""
-    names = {
-        "max_1s": "largest 1 s average",
-        "slow": "slow",
-        "fast": "fast",
-        "event": "whole event",
-    }
-    return names[averaging]
-
-
 def draw_criterion(axes: Axes, criterion: Criterion) -> None:
     """Draw a velocity criterion [um/s] with its name at its end."""
     limits = criterion.limits / MICROMETRE_PER_SECOND
@@ -112,7 +167,7 @@ def draw_criterion(axes: Axes, criterion: Criterion) -> None:
 
 
 def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -> Figure:
-    """Draw the peak accelerations of every case on the limits in gal (Figure 16)."""
+    """Draw the peak accelerations of every case on the limits in gal."""
     figure, (axes,) = new_figure(7.2, 3.8)
     i = list(result.study.points).index(point)
     labels: list[str] = []
@@ -148,7 +203,8 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
 
 
 def comparison_figure(rows: Sequence[ComparisonRow]) -> Figure:
-    """Draw our ranges with the printed values on them, for both columns of Table 2."""
+    """Draw our ranges with the printed values on them."""
+    methods = list(dict.fromkeys(row.method for row in rows))
     figure, axes = new_figure(7.2, 0.30 * len(rows) + 1.2, columns=2, share="y")
     for panel, what, unit in (
         (axes[0], "peak", "peak acceleration [gal]"),
@@ -156,7 +212,7 @@ def comparison_figure(rows: Sequence[ComparisonRow]) -> Figure:
     ):
         for y, row in enumerate(rows):
             low, middle, high = getattr(row, what)
-            colour = COLOURS[0] if row.method == "decoupled" else COLOURS[2]
+            colour = COLOURS[2 * (methods.index(row.method) % 4)]
             panel.plot([low, high], [y, y], color=colour, linewidth=5.0, alpha=0.35)
             panel.plot([middle], [y], marker="o", color=colour, markersize=4)
             panel.plot(
@@ -174,6 +230,6 @@ def comparison_figure(rows: Sequence[ComparisonRow]) -> Figure:
     )
     axes[0].invert_yaxis()
     axes[0].plot([], [], marker="o", color=COLOURS[7], label="ours: median, 5-95 %")
-    axes[0].plot([], [], marker="x", linestyle="none", color=COLOURS[1], label="printed")
+    axes[0].plot([], [], marker="x", linestyle="none", color=COLOURS[1], label="published")
     figure.legend(loc="outside upper center", ncols=2)
     return figure

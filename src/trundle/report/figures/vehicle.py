@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,20 +10,61 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from trundle.dynamics import Modal
-from trundle.report.canvas import COLOURS, new_figure
+from trundle.report.canvas import COLOURS, Drawing, new_figure
+from trundle.results.study_result import StudyResult
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import Ramp, Route
 from trundle.simulate import Crossing, contact_forces
 from trundle.simulate.step_limits import longest_step
 from trundle.vehicle import GRAVITY, Vehicle
 
-__all__ = ["axle_forces_figure", "vehicle_figure", "vehicle_modes_figure"]
+__all__ = ["drawings"]
 
 _MOST_STEPS = 50_000  # drawn: of a very stiff vehicle the beginning
 
 
+def drawings(result: StudyResult) -> Iterator[Drawing]:
+    """Give every vehicle, its natural motions, and how hard it presses at its speeds.
+
+    Yields
+    ------
+    Drawing
+        One after the other, as they stand on the page.
+    """
+    study = result.study
+    road = next(iter(study.roads.values()))
+    speeds: dict[str, set[float]] = {}
+    vehicles: dict[str, Vehicle] = {}
+    for drive in study.drives.values():
+        vehicles.setdefault(drive.vehicle.name, drive.vehicle)
+        speeds.setdefault(drive.vehicle.name, set()).add(float(drive.route.law.speed(0.0)))
+    for number, (name, vehicle) in enumerate(vehicles.items()):
+        end = f"_{number + 1}" if number else ""
+        at = sorted({*speeds[name], *study.force_speeds})
+        yield Drawing(
+            name=f"vehicle{end}",
+            title=f"Vehicle: {name}",
+            caption=f"Contacts with static loads, springs and dampers. Source: {vehicle.source}.",
+            draw=lambda one=vehicle: vehicle_figure(one),
+        )
+        yield Drawing(
+            name=f"vehicle_modes{end}",
+            title=f"Natural frequencies: {name}",
+            caption="Motion over each axle on rigid ground, largest set to 1.",
+            draw=lambda one=vehicle: vehicle_modes_figure(one),
+        )
+        yield Drawing(
+            name=f"axle_forces{end}",
+            title=f"Dynamic axle forces: {name}",
+            caption="Contact forces on rigid ground without the static load, one realisation.",
+            draw=lambda one=vehicle, at=at: axle_forces_figure(
+                one, road, study.band, at, seed=study.seed
+            ),
+        )
+
+
 def vehicle_figure(vehicle: Vehicle) -> Figure:
-    """Draw contacts, springs and static loads of a vehicle (Figures 4 and 5)."""
+    """Draw contacts, springs and static loads of a vehicle."""
     figure, (axes,) = new_figure(7.2, 2.8)
     length = max(vehicle.length, 1.0)
     axes.add_patch(_box(-0.06 * length, 1.2, 1.12 * length, 1.0))
@@ -75,7 +116,7 @@ def _spring(axes: Axes, place: float) -> None:
 
 
 def vehicle_modes_figure(vehicle: Vehicle) -> Figure:
-    """Draw the natural frequencies with the motion over each axle (Figure 6)."""
+    """Draw the natural frequencies with the motion over each axle."""
     frequencies, shapes = vehicle.mode_shapes()
     n_shown = min(len(frequencies), 6)
     figure, axes = new_figure(7.2, 2.6, columns=n_shown, share="y")
@@ -101,7 +142,7 @@ def axle_forces_figure(
     seed: int,
     duration: float = 25.0,
 ) -> Figure:
-    """Draw the dynamic axle forces of one run at several speeds [m/s] (Figure 7)."""
+    """Draw the dynamic axle forces of one run at several speeds [m/s]."""
     figure, axes = new_figure(7.2, 1.9 * len(speeds), rows=len(speeds), share="xy")
     for panel, speed in zip(axes, speeds, strict=True):
         route = Route.straight((0.0, 0.0), (1.0, 0.0), speed=speed, name="force")

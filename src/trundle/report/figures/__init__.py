@@ -1,0 +1,1 @@
+"""Draw: each file gives the drawings of its matter."""

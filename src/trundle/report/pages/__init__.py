@@ -1,0 +1,1 @@
+"""Write pages: of a study, of a record, of what would help."""

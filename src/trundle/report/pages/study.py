@@ -1,0 +1,97 @@
+"""Write the report of a study: figures, and one self-contained HTML page that opens offline."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from trundle._progress import Tell, silent
+from trundle.report.canvas import Drawing, class_colours
+from trundle.report.figures import floor, map, response, road, vehicle
+from trundle.report.html import Picture, embedded, template
+from trundle.report.interactive import plotly_script
+from trundle.results.store import provenance
+from trundle.results.study_result import StudyResult
+from trundle.road import CLASS_NAMES, class_limits
+from trundle.structure import self_weight_deflection
+from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.views.map import map_payload
+from trundle.views.printed import bound_rows, comparison_rows
+from trundle.views.tables import exact_rows, summary_rows, truncation_rows
+from trundle.views.verdicts import headline, verdict_matrix
+from trundle.views.words import road_words
+
+__all__ = ["write_report"]
+
+_FILES = (floor, road, vehicle, response, map)  # in the order of the page
+
+
+def write_report(result: StudyResult, folder: Path, *, tell: Tell | None = None) -> Path:
+    """Write ``figures/*.png``, ``figures/*.svg`` and ``report.html``; return its path.
+
+    Parameters
+    ----------
+    result : StudyResult
+        A finished study.
+    folder : Path
+        Results folder, which must exist.
+    tell : callable, optional
+        Told which figure is drawn, and the share drawn.
+    """
+    drawings = itertools.chain.from_iterable(file.drawings(result) for file in _FILES)
+    numbered = [_numbered(drawing, result.study.numbering) for drawing in drawings]
+    pictures = embedded(numbered, folder / "figures", tell=tell or silent)
+    page = folder / "report.html"
+    page.write_text(_render(result, pictures), encoding="utf-8")
+    return page
+
+
+def _numbered(drawing: Drawing, numbering: Mapping[str, str]) -> Drawing:
+    """Return a drawing whose caption ends with the number that the study gives it."""
+    number = numbering.get(drawing.name)
+    if number is None:
+        return drawing
+    return replace(drawing, caption=f"{drawing.caption} ({number})")
+
+
+def _with_colours(payload: dict[str, Any]) -> dict[str, Any]:
+    """Return what the interactive map shows, with a colour for each class."""
+    return payload and payload | {"colours": class_colours(len(payload["names"]))}
+
+
+def _render(result: StudyResult, pictures: list[Picture]) -> str:
+    study = result.study
+    columns, matrix = verdict_matrix(result)
+    modes = result.modes
+    return template("report.html.j2").render(
+        study=study,
+        numbering=study.numbering,
+        pictures=pictures,
+        comparison=comparison_rows(result),
+        bounds=bound_rows(result),
+        summary=summary_rows(result),
+        exact=exact_rows(result),
+        truncation=truncation_rows(result),
+        map=_with_colours(map_payload(result)),
+        plotly=plotly_script() if result.maps else "",
+        columns=columns,
+        roads=road_words(study),
+        matrix=matrix,
+        verdict=headline(result),
+        warnings=result.warnings(),
+        provenance=provenance(result),
+        frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],
+        n_modes=0 if modes is None else modes.n_modes,
+        moving_mass=study.floor.moving_mass() / 1e3,
+        sag=-1e3 * float(self_weight_deflection(study.floor).min()),
+        class_limits=_class_table(),
+        gal=GAL,
+        micrometre=MICROMETRE_PER_SECOND,
+    )
+
+
+def _class_table() -> list[tuple[str, list[str]]]:
+    return [(name, [f"{1e6 * v:.0f}" for v in class_limits(name)]) for name in CLASS_NAMES]

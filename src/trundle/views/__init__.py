@@ -1,0 +1,1 @@
+"""Arrange results as plain values, in engineers' units, for page and screen."""

@@ -1,0 +1,71 @@
+"""Arrange what is said of a measured record: single numbers, levels, verdicts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from trundle import __version__
+from trundle.records.assess import RecordResult
+from trundle.signals import crest_factor, nominal_frequency
+from trundle.units import GAL, MICROMETRE_PER_SECOND
+
+__all__ = ["level_rows", "record_rows", "record_summary"]
+
+
+def record_rows(result: RecordResult) -> list[dict[str, Any]]:
+    """Return single numbers of every channel, in engineers' units."""
+    runs, reduced = result.runs, result.reduced
+    return [
+        {
+            "channel": name,
+            "peak_gal": float(reduced.peak_acceleration[0, i]) / GAL,
+            "peak_time_s": float(reduced.peak_time[0, i]),
+            "rms_um_s": float(reduced.rms_velocity[0, i]) / MICROMETRE_PER_SECOND,
+            "crest_factor": float(crest_factor(runs.acceleration[0, :, i])),
+            "response_factor": float(reduced.response_factor[0, i]),
+            "vdv": float(reduced.vdv[0, i]),
+        }
+        for i, name in enumerate(runs.point_names)
+    ]
+
+
+def record_summary(result: RecordResult) -> dict[str, Any]:
+    """Return all that is said of a record, as JSON takes it."""
+    return {
+        "program": "trundle",
+        "version": __version__,
+        "source": result.record.source,
+        "averaging": result.averaging,
+        "high_pass_hz": result.high_pass,
+        "channels": record_rows(result),
+        "verdicts": [
+            {
+                "channel": v.point,
+                "axis": v.axis,
+                "criterion": v.criterion.name,
+                "verdict": v.status,
+                "margin": v.margin,
+                "governing_band_hz": v.governing_band,
+                "value_si": v.value,
+                "limit_si": v.limit,
+                "time_s": v.time,
+                "unresolved_bands_hz": list(v.unresolved),
+                "reasons": list(v.reasons) if v.status == "not assessed" else [],
+            }
+            for v in result.verdicts
+        ],
+        "warnings": [str(warning) for warning in result.warnings],
+    }
+
+
+def level_rows(result: RecordResult) -> tuple[list[str], list[list[str]]]:
+    """Return headings and rows of band levels of every channel [um/s], a row a band."""
+    spectra = result.reduced.spectra
+    rows = []
+    for i, f in enumerate(spectra.mid_band):
+        levels = spectra.values[0, :, i] / MICROMETRE_PER_SECOND
+        row = ["" if np.isnan(v) else f"{v:.6g}" for v in levels]
+        rows.append([f"{nominal_frequency(float(f)):g}", *row])
+    return ["band_hz", *(f"{name} [um/s]" for name in spectra.point_names)], rows

@@ -1,0 +1,91 @@
+"""Say values in words: numbers, ranges, roads, rules."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trundle.criteria import Verdict
+from trundle.road import CLASS_NAMES, class_limits
+from trundle.signals import Averaging, nominal_frequency
+from trundle.study.model import Study
+
+__all__ = [
+    "Range",
+    "between",
+    "hertz",
+    "rank",
+    "road_words",
+    "roughest_words",
+    "rule_name",
+    "spread",
+    "written",
+]
+
+Range = tuple[float, float, float]
+"""5 %, 50 % and 95 % of the runs."""
+
+
+def spread(values: np.ndarray, unit: float) -> Range:
+    """Return 5, 50 and 95 % of some values in a unit."""
+    low, middle, high = np.percentile(values, [5.0, 50.0, 95.0]) / unit
+    return float(low), float(middle), float(high)
+
+
+def written(value: float, digits: int = 3) -> str:
+    """Write a number with so many digits as people do: 1320, not 1.32e+03."""
+    short = float(f"{value:.{digits}g}")
+    return f"{short:.0f}" if 10.0**digits <= abs(short) < 1e6 else f"{value:.{digits}g}"
+
+
+def between(verdict: Verdict) -> str:
+    """Write a margin with its interval."""
+    low, high = verdict.interval
+    if not np.isfinite(low) or not np.isfinite(high):
+        return f"{verdict.margin:.3g}"
+    span = f"{low:.3g}-{high:.3g}" if low > 0.0 else f"at most {high:.3g}"
+    return f"{verdict.margin:.3g} ({span})"
+
+
+def hertz(f: float) -> str:
+    """Write a mid-band frequency by its name; nothing for a single number."""
+    return f"{nominal_frequency(f):g}" if np.isfinite(f) else ""
+
+
+def rank(value: float) -> str:
+    """Name a percentile; below the lowest run it is 'below all', above the highest 'above all'."""
+    if value <= 0.0:
+        return "below all"
+    if value >= 100.0:
+        return "above all"
+    return f"{value:.0f} %"
+
+
+def rule_name(averaging: Averaging) -> str:
+    """Return an averaging rule in words."""
+    names = {
+        "max_1s": "largest 1 s average",
+        "slow": "slow",
+        "fast": "fast",
+        "event": "whole event",
+    }
+    return names[averaging]
+
+
+def road_words(study: Study) -> list[str]:
+    """Return what each road is: its label, level and Gd(n0)."""
+    return [
+        f"{label}: {road.level.replace('_', ' ')} of class {road.name}, Gd(n0) = "
+        f"{1e6 * road.roughness:.3g}e-6 m3"
+        for label, road in study.roads.items()
+    ]
+
+
+def roughest_words(study: Study, road: str, verdict: Verdict) -> str:
+    """Return up to what road a criterion is passed, as far as the margin tells."""
+    if np.isnan(verdict.roughest) or verdict.criterion.quantity != "band_rms_velocity":
+        return ""
+    value = verdict.roughest * study.roads[road].roughness
+    within = [name for name in CLASS_NAMES if class_limits(name)[2] <= value]
+    name = f"all of class {within[-1]}" if within else "less than class A"
+    bound = "at least" if verdict.margin >= 1.0 else "at most"
+    return f"{bound} {1e6 * value:.3g}e-6 m3 ({name})"

@@ -10,6 +10,10 @@ from studies import GOOD
 from trundle.errors import FitnessWarning, InputError
 from trundle.mitigate.changes import Change, each_change, every_combination
 from trundle.mitigate.mitigation import resonance_speeds, try_changes
+from trundle.results.pieces import Piece
+from trundle.run.checkpoint import InMemory, unfinished_of
+from trundle.run.dask_cluster import local_cluster
+from trundle.run.threads import Threads
 from trundle.run.whole_study import run_study
 from trundle.signals import Isolator
 from trundle.simulate.fitness import LOST_CONTACT
@@ -195,3 +199,61 @@ def test_changes_that_cannot_be_are_refused(
     assert trundle("mitigate", "study.toml", option, value) == 2
     assert told in capsys.readouterr().err
     assert not (tmp_path / "study-mitigation-results").exists()
+
+
+class Counting(Threads):
+    """Counts the tasks that are computed."""
+
+    def __init__(self):
+        super().__init__()
+        self.names = []
+
+    def submit(self, task, shared, progress):
+        self.names.append(task.name)
+        super().submit(task, shared, progress)
+
+
+def test_a_sweep_that_is_stopped_goes_on_with_what_it_finished(tmp_path):
+    """Stopped after the first slab: the second run computes the rest alone, and says the same."""
+    changes = [Change(), Change(label="slab", slab_thickness=0.3)]
+    asked = {"changes": changes, "speeds": (12 * KMH, 15 * KMH), "roads": ("B",), "runs": 2}
+    study, store = study_of(tmp_path), InMemory()
+
+    def stop(what, share):
+        if what.startswith("slab"):
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        try_changes(study, **asked, tell=stop, store=store)
+    with Counting() as rest:
+        resumed = try_changes(study, **asked, store=store, executor=rest)
+    with Counting() as every:
+        whole = try_changes(study, **asked, executor=every)
+    assert 0 < len(rest.names) < len(every.names)
+    for one, other in zip(resumed.outcomes, whole.outcomes, strict=True):
+        assert [v.margin for v in one.verdicts] == [v.margin for v in other.verdicts]
+    assert resumed.resonances == whole.resonances
+
+
+def test_a_sweep_of_other_changes_takes_nothing_over(tmp_path):
+    """What decides the runs beside the study decides whether its pieces are taken up again."""
+    study, out = study_of(tmp_path), tmp_path / "out"
+    for also, found in ((("slab", 0.3), 0), (("slab", 0.3), 1), (("slab", 0.31), 0)):
+        with pytest.raises(KeyboardInterrupt), unfinished_of(study, out, also=also) as disk:
+            assert disk.n_found == found
+            disk.save("a", Piece(role="changes", arrays={"x": np.arange(3.0)}, notes={}))
+            raise KeyboardInterrupt
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore")
+def test_workers_try_changes_to_the_same_bits(tmp_path):
+    pytest.importorskip("distributed")
+    changes = [Change(), Change(label="slab", slab_thickness=0.3)]
+    asked = {"changes": changes, "speeds": (15 * KMH,), "roads": ("B", "C"), "runs": 4}
+    study = study_of(tmp_path)
+    here = try_changes(study, **asked)
+    with local_cluster(2) as cluster:
+        there = try_changes(study, **asked, executor=cluster)
+    for one, other in zip(here.outcomes, there.outcomes, strict=True):
+        assert [v.margin for v in one.verdicts] == [v.margin for v in other.verdicts]

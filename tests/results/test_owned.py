@@ -9,7 +9,7 @@ import pytest
 from trundle.errors import InputError
 from trundle.results.owned import check_owned
 from trundle.results.results_folder import check_target, new_results_folder
-from trundle.run.unfinished import unfinished_folder
+from trundle.run.checkpoint import unfinished_folder
 
 
 def results(place, kind="study"):

@@ -16,8 +16,9 @@ from studies import GOOD, spoilt
 from trundle.cli.app import main
 from trundle.errors import ComputationError, InputError, UnstableStepError
 from trundle.results.pieces import Piece
-from trundle.run.jobs import compute, plan_jobs
-from trundle.run.unfinished import InMemory, unfinished_folder, unfinished_of
+from trundle.run.checkpoint import InMemory, unfinished_folder, unfinished_of
+from trundle.run.jobs import plan_jobs
+from trundle.run.tasks import RunsTask, tasks_of
 from trundle.run.whole_study import run_study
 from trundle.study_file.build import load_study
 
@@ -144,7 +145,7 @@ def test_another_study_begins_anew(tmp_path):
         job = plan_jobs(study)[0]
         with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as store:
             assert store.n_found == 0
-            run_study(study, store=_Stopping(store, job.pieces[0]))
+            run_study(study, store=_Stopping(store, tasks_of(job)[0].name))
 
     study = load_study(path)
     stop_after_one(study)
@@ -184,7 +185,7 @@ def test_a_piece_comes_back_as_it_was(tmp_path):
     run_study(study, store=memory)
     with unfinished_of(study, tmp_path / "out") as disk:
         for job in plan_jobs(study):
-            for name in job.pieces:
+            for name in [task.name for task in tasks_of(job)]:
                 piece = memory.load(name)
                 disk.save(name, piece)
                 again = disk.load(name)
@@ -216,7 +217,9 @@ def test_a_piece_that_was_altered_is_not_believed(tmp_path, how):
     path.write_text(GOOD)
     study, memory = load_study(path), InMemory()
     run_study(study, store=memory)
-    first, second, *_ = [name for job in plan_jobs(study) for name in job.pieces]
+    first, second, *_ = [
+        name for job in plan_jobs(study) for name in [t.name for t in tasks_of(job)]
+    ]
     with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
         for name in (first, second):
             disk.save(name, memory.load(name))
@@ -231,7 +234,7 @@ def test_no_bit_and_no_end_of_a_piece_may_change(tmp_path):
     path, out = tmp_path / "study.toml", tmp_path / "out"
     path.write_text(GOOD)
     with unfinished_of(load_study(path), out) as disk:
-        disk.save("a", Piece(arrays={"x": np.arange(9.0)}, notes={"top": 1.5}))
+        disk.save("a", Piece(role="runs", arrays={"x": np.arange(9.0)}, notes={"top": 1.5}))
         file = unfinished_folder(out) / "pieces" / "a.piece"
         data = file.read_bytes()
         for spoiled in spoilt(data):
@@ -247,7 +250,7 @@ def test_a_piece_is_neither_another_s_nor_another_study_s(tmp_path):
     path.write_text(GOOD)
     kept = unfinished_folder(out) / "pieces"
     with pytest.raises(KeyboardInterrupt), unfinished_of(load_study(path), out) as disk:
-        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        disk.save("a", Piece(role="runs", arrays={"x": np.arange(3.0)}, notes={}))
         (kept / "b.piece").write_bytes((kept / "a.piece").read_bytes())
         raise KeyboardInterrupt
     with unfinished_of(load_study(path), out) as disk:
@@ -255,7 +258,7 @@ def test_a_piece_is_neither_another_s_nor_another_study_s(tmp_path):
         foreign = (kept / "a.piece").read_bytes()
     path.write_text(GOOD.replace("seed = 1", "seed = 2"))
     with pytest.raises(KeyboardInterrupt), unfinished_of(load_study(path), out) as disk:
-        disk.save("c", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        disk.save("c", Piece(role="runs", arrays={"x": np.arange(3.0)}, notes={}))
         (kept / "a.piece").write_bytes(foreign)
         raise KeyboardInterrupt
     with unfinished_of(load_study(path), out) as disk:
@@ -279,7 +282,7 @@ def test_a_stranger_s_piece_is_not_unpickled(tmp_path):
     study = load_study(path)
     with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
         payload = np.array([Payload(trace)], dtype=object)
-        disk.save("a", Piece(arrays={"x": payload}, notes={}))
+        disk.save("a", Piece(role="runs", arrays={"x": payload}, notes={}))
         raise KeyboardInterrupt
     (file,) = (unfinished_folder(out) / "pieces").iterdir()
     data = file.read_bytes()[32:]
@@ -303,7 +306,7 @@ def test_what_a_study_only_names_is_in_its_fingerprint(tmp_path):
         study = load_study(path)
         with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
             assert disk.n_found == found
-            disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+            disk.save("a", Piece(role="runs", arrays={"x": np.arange(3.0)}, notes={}))
             raise KeyboardInterrupt
 
 
@@ -355,7 +358,7 @@ def test_a_file_of_two_names_keeps_its_content(tmp_path, where):
     (folder / where).unlink(missing_ok=True)
     os.link(victim, folder / where)
     with unfinished_of(load_study(path), tmp_path / "out") as disk:
-        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        disk.save("a", Piece(role="runs", arrays={"x": np.arange(3.0)}, notes={}))
     assert victim.read_bytes() == b"mine \xff"
     assert not folder.exists()
 
@@ -366,7 +369,7 @@ def test_what_a_user_puts_beside_the_pieces_is_kept(tmp_path, fresh):
     path.write_text(GOOD)
     study, folder = load_study(path), unfinished_folder(out)
     with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
-        disk.save("a", Piece(arrays={"x": np.arange(3.0)}, notes={}))
+        disk.save("a", Piece(role="runs", arrays={"x": np.arange(3.0)}, notes={}))
         raise KeyboardInterrupt
     for name in ("notes.txt", "pieces/mine.txt"):
         (folder / name).write_text("mine")
@@ -393,7 +396,7 @@ def test_a_file_in_the_place_of_the_pieces_is_named(tmp_path):
 def test_a_full_disk_is_named_and_keeps_what_was_finished(tmp_path, monkeypatch):
     path, out = tmp_path / "study.toml", tmp_path / "out"
     path.write_text(GOOD)
-    study, piece = load_study(path), Piece(arrays={"x": np.arange(3.0)}, notes={})
+    study, piece = load_study(path), Piece(role="runs", arrays={"x": np.arange(3.0)}, notes={})
 
     def full(number):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -444,17 +447,19 @@ def test_an_error_in_one_part_stops_the_others(tmp_path, monkeypatch):
     path.write_text(STUDY)
     study = load_study(path)
 
-    def failing(job, layout, part, progress=None):
-        if job.method.name == "direct":
-            raise UnstableStepError("no longer finite", step=3, time=0.1)
-        return compute(job, layout, part, progress)
+    whole = RunsTask.compute
 
-    monkeypatch.setattr("trundle.run.in_threads.compute", failing)
+    def failing(task, laid_out, progress=None):
+        if task.job.method.name == "direct":
+            raise UnstableStepError("no longer finite", step=3, time=0.1)
+        return whole(task, laid_out, progress)
+
+    monkeypatch.setattr(RunsTask, "compute", failing)
     memory = InMemory()
     with pytest.raises(UnstableStepError) as caught:
         run_study(study, store=memory)
     assert caught.value.step == 3
-    assert memory.has(plan_jobs(study)[0].pieces[0])
+    assert memory.has(tasks_of(plan_jobs(study)[0])[0].name)
 
 
 @pytest.mark.parametrize(

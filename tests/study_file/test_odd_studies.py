@@ -137,7 +137,7 @@ def test_where_nothing_moves_nothing_is_assessed(tmp_path, monkeypatch, capsys):
 
 
 def test_a_first_mode_near_f_max_is_refused_before_the_runs(tmp_path, monkeypatch):
-    monkeypatch.setattr("trundle.run.whole_study.compute_here", None)
+    monkeypatch.setattr("trundle.run.whole_study.carry_out", None)
     study = loaded(tmp_path, ('f_max = "30 Hz"', 'f_max = "5 Hz"'))
     with pytest.raises(InputError, match=r"f_max = 5 Hz, and the floor's first is at 3\.84 Hz"):
         run_study(study)

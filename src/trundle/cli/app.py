@@ -56,19 +56,9 @@ def run(
         Path | None,
         typer.Option("--out", "-o", help="Results folder. \\[default: STUDY's name + '-results']"),
     ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            "--workers", "-w", min=1, help="Compute in so many processes, by dask on this machine."
-        ),
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option("--scheduler", help="Compute on a running dask cluster: tcp://host:8786."),
-    ] = None,
-    fresh: Annotated[
-        bool, typer.Option("--fresh", help="Begin anew: leave aside what a stopped run finished.")
-    ] = False,
+    workers: options.Workers = None,
+    scheduler: options.Scheduler = None,
+    fresh: options.Fresh = False,
     yes: options.Yes = False,
     as_json: options.Json = False,
     quiet: options.Quiet = False,
@@ -170,6 +160,9 @@ def mitigate(
         bool, typer.Option("--combine", help="Combine the changes with each other too.")
     ] = False,
     runs: Annotated[int, typer.Option("--runs", min=1, max=10_000, help="Runs of each.")] = 60,
+    workers: options.Workers = None,
+    scheduler: options.Scheduler = None,
+    fresh: options.Fresh = False,
     yes: options.Yes = False,
     as_json: options.Json = False,
     quiet: options.Quiet = False,
@@ -197,6 +190,9 @@ def mitigate(
         isolators=isolator,
         combine=combine,
         runs=runs,
+        workers=workers,
+        scheduler=scheduler,
+        fresh=fresh,
         yes=yes,
         show=show_of(as_json=as_json, quiet=quiet),
         out=out or Path(f"{study.stem}-mitigation-results"),
@@ -304,8 +300,8 @@ def _say_error(error: Exception, words: str) -> None:
 
 def _say_interrupted() -> None:
     print(
-        "interrupted: no results were written, and earlier ones still stand; 'trundle run' goes on "
-        "with what was finished",
+        "interrupted: no results were written, and earlier ones still stand; the same command goes "
+        "on with what was finished",
         file=sys.stderr,
     )
 

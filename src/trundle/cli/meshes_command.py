@@ -21,7 +21,7 @@ def compare(path: Path, *, yes: bool = False) -> None:
     study = load_study(path)
     check_affordable(f"{path} on half its mesh size", estimate_of(on_two_meshes(study)[1]), yes=yes)
     with progress_bar() as tell:
-        found = compare_meshes(study, report=tell)
+        found = compare_meshes(study, tell=tell)
     coarse, fine = found.sizes
     reach = resolved_frequency(study.plan, coarse)
     for p, point in enumerate(found.points):

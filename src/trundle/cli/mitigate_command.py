@@ -9,16 +9,18 @@ from typing import TypeVar
 
 from trundle._checks import one_of
 from trundle.cli.afford import check_affordable
+from trundle.cli.executors import check_executor, executor_of
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
 from trundle.mitigate.changes import Change, each_change, every_combination
 from trundle.mitigate.estimate import estimate_of_changes
-from trundle.mitigate.mitigation import check_speeds, try_changes
-from trundle.mitigate.sweep import Sweep
+from trundle.mitigate.mitigation import check_changes, check_speeds, try_changes
+from trundle.mitigate.outcome import Sweep
 from trundle.report import write_mitigation_report
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.road import CLASS_NAMES
+from trundle.run.checkpoint import unfinished_of
 from trundle.signals import Isolator
 from trundle.study_file.build import load_study
 from trundle.units import KMH, to_si
@@ -41,11 +43,15 @@ def mitigate(
     isolators: str,
     combine: bool,
     runs: int,
+    workers: int | None,
+    scheduler: str | None,
+    fresh: bool,
     yes: bool,
     out: Path,
     show: Show = "tables",
 ) -> None:
     """Run every combination, print matrices and write a results folder."""
+    check_executor(workers, scheduler)
     study = load_study(path)
     check_target(out, "comparison")
     at = sorted(set(_each("--speeds", speeds, lambda text: to_si(text, "speed"))))
@@ -57,14 +63,27 @@ def mitigate(
         raise InputError(f"--roads {roads!r}: give road classes, such as 'A, B'")
     levers = _levers(vehicles, slabs, dampings, isolators)
     changes = every_combination(levers) if combine else each_change(levers)
+    check_changes(study, changes)
     check_speeds(study, at)
-    check_affordable(str(path), estimate_of_changes(study, changes, at, runs), yes=yes)
+    estimate = estimate_of_changes(study, changes, at, runs, classes)
+    check_affordable(str(path), estimate, yes=yes)
     with (
+        unfinished_of(study, out, fresh=fresh, also=(changes, at, classes, runs)) as store,
+        executor_of(workers, scheduler) as executor,
         progress_bar(quiet=show == "nothing") as tell,
-        new_results_folder(out, kind="comparison") as folder,
+        new_results_folder(out, within=store.folder, kind="comparison") as folder,
     ):
+        if store.n_found:
+            tell(f"going on from {store.n_found} finished pieces of an earlier run", 0.0)
         sweep = try_changes(
-            study, changes=changes, speeds=at, roads=classes, runs=runs, report=tell
+            study,
+            changes=changes,
+            speeds=at,
+            roads=classes,
+            runs=runs,
+            tell=tell,
+            store=store,
+            executor=executor,
         )
         write_mitigation_report(sweep, folder)
     report = out.resolve() / "report.html"

@@ -54,6 +54,19 @@ Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables
 Quiet = Annotated[
     bool, typer.Option("--quiet", "-q", help="Print nothing but warnings and errors.")
 ]
+Workers = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", "-w", min=1, help="Compute in so many processes, by dask on this machine."
+    ),
+]
+Scheduler = Annotated[
+    str | None,
+    typer.Option("--scheduler", help="Compute on a running dask cluster: tcp://host:8786."),
+]
+Fresh = Annotated[
+    bool, typer.Option("--fresh", help="Begin anew: leave aside what a stopped run finished.")
+]
 Yes = Annotated[
     bool,
     typer.Option("--yes", "-y", help="Compute it even if it takes hours, or all the memory."),

@@ -3,40 +3,25 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
 
 from trundle.cli.afford import check_affordable
+from trundle.cli.executors import check_executor, executor_of
 from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.result_tables import print_result
 from trundle.cli.screen import progress_bar
 from trundle.cli.show import Show, say_json, warn
-from trundle.errors import InputError
 from trundle.report import write_report
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.results.store import write_results
+from trundle.run.checkpoint import unfinished_of
 from trundle.run.estimate import estimate_of
-from trundle.run.scale_out import Cluster, cluster_at, local_cluster
-from trundle.run.unfinished import unfinished_of
 from trundle.run.whole_study import run_study
 from trundle.study.doubts import study_doubts
 from trundle.study_file.build import load_study
 
 __all__ = ["run"]
-
-
-@contextmanager
-def _cluster(workers: int | None, scheduler: str | None) -> Generator[Cluster | None]:
-    """Give the cluster that is asked for, if any."""
-    if scheduler is not None:
-        with cluster_at(scheduler) as cluster:
-            yield cluster
-    elif workers is not None:
-        with local_cluster(workers) as cluster:
-            yield cluster
-    else:
-        yield None
 
 
 def run(
@@ -51,8 +36,7 @@ def run(
     fail_on: Sequence[str] = (),
 ) -> bool:
     """Run a study and write its results folder; return whether a criterion asked for is unmet."""
-    if workers is not None and scheduler is not None:
-        raise InputError("--workers starts a cluster and --scheduler uses one: give one of them")
+    check_executor(workers, scheduler)
     study = load_study(path)
     check_fail_on(fail_on, () if study.assessment is None else study.assessment.criteria)
     check_target(out)
@@ -63,7 +47,7 @@ def run(
     place = out.resolve()
     with (
         unfinished_of(study, out, fresh=fresh) as store,
-        _cluster(workers, scheduler) as cluster,
+        executor_of(workers, scheduler) as executor,
         progress_bar(quiet=show == "nothing") as tell,
         new_results_folder(out, within=store.folder) as folder,
     ):
@@ -71,9 +55,9 @@ def run(
             tell(f"going on from {store.n_found} finished pieces of an earlier run", 0.0)
         result = run_study(
             study,
-            report=lambda what, share: tell(what, 0.94 * share),
+            tell=lambda what, share: tell(what, 0.94 * share),
             store=store,
-            cluster=cluster,
+            executor=executor,
         )
         tell("writing results", 0.94)
         write_results(result, folder)

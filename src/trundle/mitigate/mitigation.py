@@ -5,43 +5,39 @@ from __future__ import annotations
 import itertools
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from contextlib import nullcontext
 
 import numpy as np
 
+from trundle._kinds import kinds_checked
 from trundle._progress import Tell, silent
-from trundle.criteria import assess_reduced, spectra_asked_for
+from trundle.criteria import assess_reduced
 from trundle.dynamics import Modes, repeatable
 from trundle.errors import InputError
 from trundle.mitigate.changes import Change, changed_study
-from trundle.mitigate.sweep import Outcome, Sweep
-from trundle.response import (
-    behind_isolators,
-    few_runs_warnings,
-    level_warnings,
-    reduce_rougher,
-)
-from trundle.road import RoadClass
+from trundle.mitigate.outcome import Outcome, Sweep
+from trundle.mitigate.plan import Combination, assessed, plan_changes
+from trundle.mitigate.tasks import behind
+from trundle.response import few_runs_warnings, level_warnings
+from trundle.results.pieces import SampledRuns, sampled_runs
+from trundle.run.checkpoint import InMemory, PieceStore
+from trundle.run.estimate import mode_seconds, size_of
+from trundle.run.executor import Batch, Executor, carry_out
+from trundle.run.floors import Floors
+from trundle.run.jobs import lay_out_job
 from trundle.run.mode_cache import modes_of
-from trundle.simulate import (
-    MeanResponse,
-    PreparedFloor,
-    Runs,
-    StaticFlexibility,
-    lay_out,
-    prepare,
-    runs_with_mean,
-)
-from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
-from trundle.study.model import Assessment, Case, MethodPlan, Study
+from trundle.run.progress import Bar
+from trundle.run.threads import Threads
+from trundle.study.model import Study
 from trundle.vehicle import Vehicle
 
-__all__ = ["check_speeds", "resonance_speeds", "sharing_runs", "try_changes"]
+__all__ = ["check_changes", "check_speeds", "resonance_speeds", "try_changes"]
 
 _LEAST_STEPS, _MOST_STEPS = 20, 100_000  # of a crossing
 _ORDERS = (1, 2, 3)  # multiples of the axle passing frequency that are marked
 
 
+@kinds_checked
 def try_changes(
     study: Study,
     *,
@@ -49,7 +45,9 @@ def try_changes(
     speeds: Sequence[float],
     roads: Sequence[str],
     runs: int,
-    report: Tell | None = None,
+    tell: Tell | None = None,
+    store: PieceStore | None = None,
+    executor: Executor | None = None,
 ) -> Sweep:
     """Run every combination of changes, speeds and road classes, and hold it against the criteria.
 
@@ -66,39 +64,35 @@ def try_changes(
         Road classes, A to H, at the geometric mean.
     runs : int
         Runs of each combination.
-    report : callable, optional
+    tell : callable, optional
         Told what is being done, and the share done.
+    store : PieceStore, optional
+        Where finished pieces are kept; those found there are not computed again.
+    executor : Executor, optional
+        Who computes; threads of this process unless given.
     """
-    if study.assessment is None:
-        raise InputError(f"{study.source}: has no [criteria] to hold changes against; add them")
-    for label, times in Counter(change.label for change in changes).items():
-        if times > 1:
-            raise InputError(f"{times} changes are called {label!r}; give each a name of its own")
+    check_changes(study, changes)
     check_speeds(study, speeds)
-    tell = report or silent
-    alike = sharing_runs(changes)
-    total, done = len(alike) * len(speeds) * len(study.cases), 0
-    found: dict[tuple[str, float, str], list[Outcome]] = {}
+    tell = tell or silent
+    store = store if store is not None else InMemory()
+    planned = plan_changes(study, changes=changes, speeds=speeds, roads=roads, runs=runs)
+    bar = _bar(study, planned, tell)
     resonances: dict[tuple[str, str], tuple[float, ...]] = {}
-    slab: _Slab | None = None
-    with repeatable():
-        for together in alike:
-            first = together[0]
-            tell(f"{first.label}: modes of the floor", done / total)
-            if slab is None or slab.thickness != first.slab_thickness:
-                slab = _slab(study, first.slab_thickness)
-            tried = _tried(slab, first, roads)
-            for case in study.cases:
-                marked = _resonances(tried, case, speeds)
-                resonances |= {(change.label, case.name): marked for change in together}
-            for speed, case in itertools.product(speeds, study.cases):
-                tell(f"{first.label}: {case.name} at {3.6 * speed:.3g} km/h", done / total)
-                passages = _passages(tried, case, speed, runs)
-                for change in together:
-                    outcomes = _outcomes(tried, passages, change, case, speed)
-                    found[change.label, speed, case.name] = outcomes
-                done += 1
+    with nullcontext(executor) if executor is not None else Threads() as who:
+        for thickness, group in itertools.groupby(planned, key=lambda one: one.slab_thickness):
+            of_slab = list(group)
+            slab = changed_study(study, Change(slab_thickness=thickness))
+            bar.begin(f"{of_slab[0].changes[0].label}: modes of the floor")
+            modes = _modes(slab)
+            bar.finished([_name(thickness)])
+            carry_out(_batches(slab, of_slab, modes), who, store, bar)
+            resonances |= _resonances(study, of_slab, modes, speeds)
     tell("done", 1.0)
+    found = {
+        (outcomes[0].change, one.speed, one.case.name): outcomes
+        for one in planned
+        for outcomes in _outcomes(study, one, store)
+    }
     labels, names = [change.label for change in changes], [case.name for case in study.cases]
     ordered = (found[key] for key in itertools.product(labels, speeds, names))
     return Sweep(
@@ -112,6 +106,15 @@ def try_changes(
     )
 
 
+def check_changes(study: Study, changes: Sequence[Change]) -> None:
+    """Refuse a study without criteria, and changes of one name."""
+    if study.assessment is None:
+        raise InputError(f"{study.source}: has no [criteria] to hold changes against; add them")
+    for label, times in Counter(change.label for change in changes).items():
+        if times > 1:
+            raise InputError(f"{times} changes are called {label!r}; give each a name of its own")
+
+
 def check_speeds(study: Study, speeds: Sequence[float]) -> None:
     """Refuse speeds at which a crossing takes next to no steps, or endlessly many [m/s]."""
     dt = min(method.interaction.integration.dt for method in study.methods)
@@ -123,15 +126,6 @@ def check_speeds(study: Study, speeds: Sequence[float]) -> None:
                 f"a speed of {3.6 * speed:g} km/h crosses the longest route in {steps:.3g} steps "
                 f"of {1e3 * dt:g} ms; {_LEAST_STEPS} to {_MOST_STEPS} are computed"
             )
-
-
-def sharing_runs(changes: Sequence[Change]) -> list[list[Change]]:
-    """Return changes that differ by their isolators alone together, those of one slab in a row."""
-    groups: dict[tuple[float, float, int], list[Change]] = {}
-    for change in changes:
-        key = (change.slab_thickness or 0.0, change.damping_ratio or 0.0, id(change.vehicle))
-        groups.setdefault(key, []).append(change)
-    return sorted(groups.values(), key=lambda group: group[0].slab_thickness or 0.0)
 
 
 def resonance_speeds(vehicle: Vehicle, f1: float, speeds: Sequence[float]) -> tuple[float, ...]:
@@ -153,130 +147,97 @@ def resonance_speeds(vehicle: Vehicle, f1: float, speeds: Sequence[float]) -> tu
     return tuple(sorted({float(v) for v in found if min(speeds) <= v <= max(speeds)}))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Slab:
-    """The study with a slab of some thickness, and what is known of its floor."""
-
-    thickness: float | None
-    study: Study
-    modes: Modes | None
-    flexibility: StaticFlexibility
+def _name(thickness: float | None) -> str:
+    """Name the modes of a slab among what takes time."""
+    return f"modes of slab {thickness}"
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Tried:
-    """The study as changed, but for isolators, on the first of the roads."""
-
-    study: Study
-    method: MethodPlan
-    assessment: Assessment
-    prepared: PreparedFloor
-    classes: tuple[RoadClass, ...]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Passages:
-    """The runs of one case at one speed on the first road, and their mean."""
-
-    runs: Runs
-    mean: MeanResponse
+def _bar(study: Study, planned: Sequence[Combination], tell: Tell) -> Bar:
+    """Return what tells the share done, by what modes and tasks cost."""
+    costs: dict[str, float] = {}
+    for one in planned:
+        size = size_of(study, one.job)
+        costs[_name(one.slab_thickness)] = mode_seconds(size.n_dofs, size.n_modes) + 1e-3
+        costs |= {task.name: task.seconds(size) for task in one.tasks(study)}
+    return Bar(tell, 0.0, costs)
 
 
-def _slab(study: Study, thickness: float | None) -> _Slab:
-    changed = changed_study(study, Change(slab_thickness=thickness))
-    method = _assessed(changed)[1]
-    f_max = getattr(method.interaction.integration, "f_max", None)
-    modes = None if f_max is None else modes_of(changed.floor, f_max=f_max)
-    flexibility = StaticFlexibility(changed.floor)
-    return _Slab(thickness=thickness, study=changed, modes=modes, flexibility=flexibility)
+def _modes(slab: Study) -> Modes | None:
+    """Find the modes of a slab, as far as the assessed method keeps them."""
+    f_max = getattr(assessed(slab)[1].interaction.integration, "f_max", None)
+    if f_max is None:
+        return None
+    with repeatable():
+        return modes_of(slab.floor, f_max=f_max)
 
 
-def _tried(slab: _Slab, change: Change, roads: Sequence[str]) -> _Tried:
-    classes = tuple(RoadClass(name) for name in roads)  # pyright: ignore[reportArgumentType] - checked
-    rest = replace(change, slab_thickness=None, isolation=None)
-    study = replace(changed_study(slab.study, rest), roads={"first": classes[0]})
-    assessment, method = _assessed(study)
-    interaction = method.interaction
-    return _Tried(
-        study=study,
-        method=method,
-        assessment=assessment,
-        prepared=prepare(
-            study.floor,
-            interaction.integration,
-            interaction.damping,
-            modes=slab.modes,
-            flexibility=slab.flexibility,
-        ),
-        classes=classes,
-    )
+def _batches(slab: Study, combinations: Sequence[Combination], modes: Modes | None) -> list[Batch]:
+    """Return the tasks of the combinations of one slab, ready to be laid out."""
+    floors = Floors(slab.floor, modes, [one.job for one in combinations])
+    return [
+        Batch(
+            label=one.label,
+            job=one.job,
+            tasks=one.tasks(slab),
+            floor=slab.floor,
+            lay_out=lambda job=one.job: lay_out_job(job, floors.of(job)),
+        )
+        for one in combinations
+    ]
 
 
-def _assessed(study: Study) -> tuple[Assessment, MethodPlan]:
-    assessment = study.assessment
-    assert assessment is not None  # looked for at the start
-    return assessment, next(m for m in study.methods if m.name == assessment.method)
+def _resonances(
+    study: Study, combinations: Sequence[Combination], modes: Modes | None, speeds: Sequence[float]
+) -> dict[tuple[str, str], tuple[float, ...]]:
+    """Return by change and case the speeds at which axles pass in step with the first mode."""
+    found: dict[tuple[str, str], tuple[float, ...]] = {}
+    for one in combinations:
+        for change in one.changes:
+            drives = changed_study(study, Change(vehicle=change.vehicle)).drives
+            vehicles = [drives[name].vehicle for name in one.case.routes] if modes else []
+            f1 = float(modes.frequencies[0]) if modes else np.nan
+            marked = {v for vehicle in vehicles for v in resonance_speeds(vehicle, f1, speeds)}
+            found[change.label, one.case.name] = tuple(sorted(marked))
+    return found
 
 
-def _resonances(tried: _Tried, case: Case, speeds: Sequence[float]) -> tuple[float, ...]:
-    modes = tried.prepared.modes
-    if modes is None:
-        return ()
-    f1 = float(modes.frequencies[0])
-    vehicles = [tried.study.drives[name].vehicle for name in case.routes]
-    return tuple(sorted({v for one in vehicles for v in resonance_speeds(one, f1, speeds)}))
+def _outcomes(study: Study, one: Combination, store: PieceStore) -> list[list[Outcome]]:
+    """Hold the runs of a combination against the criteria, by change and road."""
+    pieces = [store.load(task.name) for task in one.tasks(study)]
+    found: list[list[Outcome]] = []
+    for k, change in enumerate(one.changes):
+        own = [behind(piece, k) for piece in pieces]
+        runs = [sampled_runs(own, road) for road in range(len(one.job.factors))]
+        found.append(_of_change(study, one, change.label, runs))
+    return found
 
 
-def _passages(tried: _Tried, case: Case, speed: float, runs: int) -> _Passages:
-    """Run one case at one speed; the other roads differ by a factor alone."""
-    study = tried.study.at_speed(speed)
-    crossings = study.crossings(case, "first", tried.method)
-    layout = lay_out(
-        tried.prepared,
-        crossings,
-        method=tried.method.interaction,
-        points=study.points,
-        duration=study.long_enough(crossings),
-    )
-    found, mean = runs_with_mean(layout, runs=range(runs), seed=study.seed)
-    return _Passages(runs=found, mean=mean)
-
-
-def _outcomes(
-    tried: _Tried, passages: _Passages, change: Change, case: Case, speed: float
+def _of_change(
+    study: Study, one: Combination, label: str, found: Sequence[SampledRuns]
 ) -> list[Outcome]:
-    """Hold passages behind the isolators of a change against the criteria, on every road."""
-    study = changed_study(tried.study, Change(isolation=change.isolation))
-    assessment, runs = tried.assessment, passages.runs
-    factors = [float(np.sqrt(c.roughness / tried.classes[0].roughness)) for c in tried.classes]
-    reduced = reduce_rougher(
-        behind_isolators(runs, study.isolations),
-        behind_isolators(passages.mean, study.isolations),
-        factors,
-        averaging=assessment.averaging,
-        quantities=spectra_asked_for(assessment.criteria),
-    )
+    """Hold the runs of one change against the criteria, on every road."""
+    assessment, _ = assessed(study)
+    first = found[0]
     doubts = (
-        *(w for w in runs.warnings if w.subject != LOST_CONTACT),
-        *level_warnings(assessment.averaging, float(runs.time[-1]), levels=reduced[0].spectra),
-        *few_runs_warnings(len(runs.acceleration), assessment.percentile),
+        *level_warnings(assessment.averaging, first.ends, levels=first.reduced.spectra),
+        *few_runs_warnings(len(first.reduced.rms_velocity), assessment.percentile),
     )
     return [
         Outcome(
-            change=change.label,
-            case=case.name,
-            speed=speed,
-            road=road.name,
+            change=label,
+            case=one.case.name,
+            speed=one.speed,
+            road=road,
             verdicts=assess_reduced(
-                one,
+                runs.reduced,
                 assessment.criteria,
                 percentile=assessment.percentile,
-                top=min(runs.f_max, runs.sampling_frequency / 2.5),
+                top=runs.top,
                 coverage=runs.coverage,
                 events=assessment.events,
             ),
             excited_to=runs.coverage.excited_to,
-            warnings=(*contact_warnings(float(one.tension.any(axis=1).mean())), *doubts),
+            warnings=(*runs.warnings, *doubts),
         )
-        for road, one in zip(tried.classes, reduced, strict=True)
+        for road, runs in zip(one.job.factors, found, strict=True)
     ]

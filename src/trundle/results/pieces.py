@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
@@ -20,7 +20,9 @@ from trundle.results.cells import EXACT_SHARES, Cell, CellKey, History
 from trundle.simulate import Coverage, Runs, TruncationChange
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
 
-__all__ = ["Piece", "cell_of", "exact_piece", "runs_piece"]
+__all__ = ["Piece", "SampledRuns", "cell_of", "exact_piece", "runs_piece", "sampled_runs"]
+
+Role: TypeAlias = Literal["runs", "exact", "map", "changes"]
 
 _RUNS = (
     "peak_acceleration",
@@ -45,12 +47,15 @@ class Piece:
 
     Attributes
     ----------
+    role : {"runs", "exact", "map", "changes"}
+        What it holds.
     arrays : mapping of str to ndarray
         Numbers; those of one road bear its place before a full stop.
     notes : mapping of str
         What can be written as JSON.
     """
 
+    role: Role
     arrays: Mapping[str, Array]
     notes: Mapping[str, Any]
 
@@ -84,7 +89,7 @@ def runs_piece(
     if truncation is not None:
         arrays |= {f"truncation.{name}": getattr(truncation, name) for name in _TRUNCATION}
         notes["truncation_f_max"] = truncation.f_max
-    return Piece(arrays=arrays, notes=notes)
+    return Piece(role="runs", arrays=arrays, notes=notes)
 
 
 def exact_piece(exact: ExactStatistics, factors: Sequence[float]) -> Piece:
@@ -103,7 +108,56 @@ def exact_piece(exact: ExactStatistics, factors: Sequence[float]) -> Piece:
         "n_waves": exact.n_waves,
         "point_names": list(exact.point_names),
     }
-    return Piece(arrays=arrays, notes=notes)
+    return Piece(role="exact", arrays=arrays, notes=notes)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SampledRuns:
+    """Hold what is kept of all runs on one road.
+
+    Attributes
+    ----------
+    reduced : Reduced
+        What is kept of every run.
+    top : float
+        Highest frequency that levels can be trusted to [Hz].
+    coverage : Coverage
+        Which bands the road excites, and whether the vehicles have left.
+    ends : float
+        Time at which the record ends [s].
+    warnings : tuple of FitnessWarning
+        Doubts, that of lost contact first.
+    """
+
+    reduced: Reduced
+    top: float
+    coverage: Coverage
+    ends: float
+    warnings: tuple[FitnessWarning, ...]
+
+
+def sampled_runs(pieces: Sequence[Piece], road: int) -> SampledRuns:
+    """Put the pieces of runs together, for one of their roads.
+
+    Parameters
+    ----------
+    pieces : sequence of Piece
+        What runs left, in their order.
+    road : int
+        Place of the road in the job.
+    """
+    notes = pieces[0].notes
+    runs = join([_reduced(piece, road) for piece in pieces])
+    return SampledRuns(
+        reduced=runs,
+        top=float(notes["top"]),
+        coverage=Coverage.from_notes(notes["coverage"]),
+        ends=float(pieces[0].arrays["time"][-1]),
+        warnings=(
+            *contact_warnings(float(runs.tension.any(axis=1).mean())),
+            *(FitnessWarning(subject=s, message=text) for s, text in notes["warnings"]),
+        ),
+    )
 
 
 def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> Cell:
@@ -120,14 +174,15 @@ def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> 
     pieces : sequence of Piece
         All pieces of the job, in their order.
     """
-    sampled = [piece for piece in pieces if "averaging" in piece.notes]
-    exact = [piece for piece in pieces if "quadrature_error" in piece.notes]
+    sampled = [piece for piece in pieces if piece.role == "runs"]
+    exact = [piece for piece in pieces if piece.role == "exact"]
     first, notes = sampled[0].arrays, sampled[0].notes
-    runs = join([_reduced(piece, road) for piece in sampled])
-    pulling = contact_warnings(float(runs.tension.any(axis=1).mean()))
+    runs = sampled_runs(sampled, road)
+    pulling = [w for w in runs.warnings if w.subject == LOST_CONTACT]
+    others = [w for w in runs.warnings if w.subject != LOST_CONTACT]
     return Cell(
         key=key,
-        reduced=runs,
+        reduced=runs.reduced,
         contact_names=tuple(notes["contact_names"]),
         exact=_exact(exact[0]).rougher(factor) if exact else None,
         exact_peaks=exact[0].arrays[f"{road}.peaks"] if exact else None,
@@ -135,13 +190,9 @@ def cell_of(key: CellKey, road: int, factor: float, pieces: Sequence[Piece]) -> 
         history=History(
             time=first["time"], **{name: first[f"{road}.history.{name}"] for name in _HISTORY}
         ),
-        top=float(notes["top"]),
-        coverage=Coverage.from_notes(notes["coverage"]),
-        warnings=(
-            *pulling,
-            *_quadrature_warnings(key, exact),
-            *(FitnessWarning(subject=s, message=text) for s, text in notes["warnings"]),
-        ),
+        top=runs.top,
+        coverage=runs.coverage,
+        warnings=(*pulling, *_quadrature_warnings(key, exact), *others),
     )
 
 

@@ -1,7 +1,5 @@
 """Estimate how long a study will take and how much memory, before anything is computed.
 
-Each part's time is proportional to counts that are known beforehand; the factors were fitted to
-whole parts of sixteen studies on two cores (`benchmarks/estimate.py`), to within a factor of two.
 The number of modes is Weyl's for a plate: ``A f sqrt(m / D) / 2``, beams left out.
 """
 
@@ -14,9 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from trundle.dynamics import Modal
+from trundle.run.costs import Size, run_in_steps
 from trundle.run.jobs import Job, plan_jobs
 from trundle.run.mode_cache import has_modes
-from trundle.simulate.ensembles import runs_at_once
+from trundle.run.tasks import tasks_of
 from trundle.structure import FloorPlan
 from trundle.study.model import Study
 
@@ -28,15 +27,13 @@ __all__ = [
     "memory_there_is",
     "mode_seconds",
     "n_modes_of",
-    "part_seconds",
     "peak_memory",
-    "shares_of",
+    "seconds_of_modes",
+    "size_of",
 ]
 
 _MODES = 8e-7  # s for each degree of freedom and mode
-_PASS = 7e-5  # s for each step of a batch, however few its runs
 _LAY_OUT = 5e-5  # s for each degree of freedom, for each job
-_DIRECT = 1e-8  # s for each run, step and degree of freedom to the power 1.2
 _FIGURES = 0.6  # s for each cell's figures and tables
 
 START = 8.0
@@ -83,14 +80,11 @@ def estimate_of(study: Study) -> Estimate:
     """
     jobs = plan_jobs(study)
     n_dofs = study.floor.n_dofs
-    n_modes = {job.name: n_modes_of(study.plan, job) for job in jobs}
-    most = max(n_modes.values())
-    spent = {"modes of the floor": _seconds_of_modes(study, jobs, most)}
+    most = max(n_modes_of(study.plan, job) for job in jobs)
+    spent = {"modes of the floor": seconds_of_modes(study, jobs)}
     for job in jobs:
-        seconds = job_seconds(job, n_modes[job.name], n_dofs)
-        spent[f"{job.case.name}, {job.method.name}"] = (
-            spent.get(f"{job.case.name}, {job.method.name}", 0.0) + seconds
-        )
+        name = f"{job.case.name}, {job.method.name}"
+        spent[name] = spent.get(name, 0.0) + job_seconds(job, size_of(study, job))
     cells = len(study.cases) * len(study.roads) * len(study.methods)
     return Estimate(
         seconds=START + _FIGURES * cells + sum(spent.values()),
@@ -99,64 +93,19 @@ def estimate_of(study: Study) -> Estimate:
     )
 
 
-def part_seconds(job: Job, n_modes: float, n_dofs: int) -> tuple[float, ...]:
-    """Return about how long each part of a job takes on two cores [s].
-
-    Parameters
-    ----------
-    job : Job
-        The job.
-    n_modes : float
-        Modes of its floor, 0 for direct integration.
-    n_dofs : int
-        Degrees of freedom of the floor.
-    """
-    dt = job.method.interaction.integration.dt
-    steps = job.duration / dt + _run_in_steps(job, dt)
-    contacts = sum(crossing.vehicle.n_contacts for crossing in job.crossings)
-    points, roads = len(job.points), len(job.factors)
-    if not job.modal:
-        return tuple(_DIRECT * steps * (len(p) + 2) * n_dofs**1.2 for p in job.parts)
-    a_run = 1.5e-7 * contacts + (0.8e-7 + 1.8e-7 * roads) * points
-    a_run += 1.5e-11 * n_modes * (points + contacts)
-    found = [steps * (_PASS + 2.6e-7 * n_modes + len(part) * a_run) for part in job.parts]
-    if job.n_waves:
-        a_wave = 8.3e-10 * n_modes + 6e-8 * contacts + 2.2e-7 * points
-        at_once = max(1, runs_at_once(job.crossings, dt, job.duration, points) // 2)
-        passes = float(np.ceil(job.n_waves * len(job.crossings) / at_once))
-        found.append(steps * (passes * _PASS + 2.0 * job.n_waves * len(job.crossings) * a_wave))
-    if job.map is not None:
-        columns = 67.0 + job.map.runs * roads * (1.5 if job.map.peaks else 1.0)
-        found.append(2e-8 * steps * len(job.map.places) * columns)
-    return tuple(found)
+def size_of(study: Study, job: Job) -> Size:
+    """Return how large a study's floor is for one of its jobs."""
+    return Size(n_dofs=study.floor.n_dofs, n_modes=n_modes_of(study.plan, job))
 
 
-def job_seconds(job: Job, n_modes: float, n_dofs: int) -> float:
-    """Return about how long a job takes with its layout [s], see `part_seconds`."""
-    return sum(part_seconds(job, n_modes, n_dofs)) + _LAY_OUT * n_dofs
+def job_seconds(job: Job, size: Size) -> float:
+    """Return about how long a job takes with its layout [s]."""
+    return sum(task.seconds(size) for task in tasks_of(job)) + _LAY_OUT * size.n_dofs
 
 
 def mode_seconds(n_dofs: int, n_modes: float) -> float:
     """Return about how long so many modes of a floor take [s]."""
     return _MODES * n_dofs * n_modes
-
-
-def shares_of(study: Study, jobs: Sequence[Job]) -> tuple[float, dict[str, float]]:
-    """Return what share of a study's time its modes take, and what each piece costs [s].
-
-    Parameters
-    ----------
-    study : Study
-        The study.
-    jobs : sequence of Job
-        Its jobs.
-    """
-    n_dofs, n_modes = study.floor.n_dofs, [n_modes_of(study.plan, job) for job in jobs]
-    costs: dict[str, float] = {}
-    for job, n in zip(jobs, n_modes, strict=True):
-        costs |= dict(zip(job.pieces, part_seconds(job, n, n_dofs), strict=True))
-    of_modes = _seconds_of_modes(study, jobs, max(n_modes))
-    return of_modes / (of_modes + sum(costs.values())), costs
 
 
 def memory_there_is() -> float:
@@ -190,18 +139,14 @@ def n_modes_of(plan: FloorPlan, job: Job) -> float:
     return 1.0 + 0.5 * area * integration.f_max * float(np.sqrt(mass / stiffness))
 
 
-def _seconds_of_modes(study: Study, jobs: Sequence[Job], n_modes: float) -> float:
-    """Return how long the modes take, nothing where they are kept from before."""
+def seconds_of_modes(study: Study, jobs: Sequence[Job]) -> float:
+    """Return how long the modes of jobs take, nothing where they are kept from before [s]."""
     integrations = (job.method.interaction.integration for job in jobs)
     f_max = max((i.f_max for i in integrations if isinstance(i, Modal)), default=0.0)
     if f_max == 0.0 or has_modes(study.floor, f_max):
         return 0.0
+    n_modes = max(n_modes_of(study.plan, job) for job in jobs)
     return mode_seconds(study.floor.n_dofs, n_modes)
-
-
-def _run_in_steps(job: Job, dt: float) -> float:
-    """Return how many steps the vehicles take before they reach the floor."""
-    return max(0.0, *(c.run_in_time - c.depart for c in job.crossings)) / dt
 
 
 def peak_memory(jobs: Sequence[Job], n_dofs: int, n_modes: float) -> float:
@@ -212,7 +157,7 @@ def peak_memory(jobs: Sequence[Job], n_dofs: int, n_modes: float) -> float:
 
 def _memory_of(job: Job) -> float:
     dt = job.method.interaction.integration.dt
-    before, record = _run_in_steps(job, dt), job.duration / dt
+    before, record = run_in_steps(job), job.duration / dt
     contacts = sum(crossing.vehicle.n_contacts for crossing in job.crossings)
     points, roads = len(job.points), len(job.factors)
     columns = 1 + max((len(part) for part in job.parts), default=job.n_waves)

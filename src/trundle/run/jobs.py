@@ -1,4 +1,4 @@
-"""Cut a study into jobs, and jobs into parts that can be computed anywhere, in any order."""
+"""Cut a study into jobs: what shares a layout."""
 
 from __future__ import annotations
 
@@ -8,34 +8,25 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trundle._progress import Progress
 from trundle.criteria import spectra_asked_for
 from trundle.dynamics import Modal
 from trundle.response import (
     SpectrumQuantity,
-    behind_isolators,
-    exact_statistics,
-    reduce_rougher,
 )
-from trundle.results.pieces import Piece, exact_piece, runs_piece
-from trundle.run.map_part import map_piece
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import (
     Crossing,
     Layout,
     PlaceResponses,
     PreparedFloor,
-    harmonics,
     lay_out,
     lay_out_places,
-    runs_with_mean,
-    truncation_change,
 )
 from trundle.simulate.ensembles import runs_at_once
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Case, MethodPlan, Study
 
-__all__ = ["Job", "LaidOut", "compute", "lay_out_job", "plan_jobs"]
+__all__ = ["Job", "LaidOut", "lay_out_job", "plan_jobs"]
 
 
 _WAVES = 400  # shared among the roads of a case: 800 runs' worth; fewer miss sharp answers
@@ -61,7 +52,7 @@ class Job:
     factors : mapping of str to float
         How many times rougher each road is than the first.
     parts : tuple of range
-        Numbers of the runs of each part; the last part after them are the exact statistics.
+        Numbers of the runs that are computed together.
     n_waves : int
         Waves of each road for exact statistics, 0 for none.
     points : mapping of str to (x, y)
@@ -97,14 +88,6 @@ class Job:
     isolations: Mapping[str, Isolation]
     map: MapPlan | None
     speed: float | None
-
-    @property
-    def pieces(self) -> tuple[str, ...]:
-        """One name for what each part leaves, unique in the study."""
-        names = [f"{self.name}-runs{i:04d}" for i in range(len(self.parts))]
-        names += [f"{self.name}-exact"] if self.n_waves else []
-        names += [f"{self.name}-map"] if self.map is not None else []
-        return tuple(names)
 
     @property
     def modal(self) -> bool:
@@ -202,52 +185,3 @@ def lay_out_job(job: Job, floor: PreparedFloor) -> LaidOut:
     )
     places = None if job.map is None else lay_out_places(floor, layout, job.map.places)
     return LaidOut(layout=layout, places=places)
-
-
-def compute(job: Job, laid_out: LaidOut, part: int, progress: Progress | None = None) -> Piece:
-    """Compute one part of a job; the same bits wherever and whenever.
-
-    Parameters
-    ----------
-    job : Job
-        The job.
-    laid_out : LaidOut
-        What its parts share.
-    part : int
-        Which of its pieces.
-    progress : callable, optional
-        Told the share done.
-    """
-    layout, factors = laid_out.layout, list(job.factors.values())
-    if part < len(job.parts):
-        return _runs(job, layout, part, progress)
-    if job.pieces[part].endswith("-map"):
-        assert job.map is not None  # its piece is named
-        assert laid_out.places is not None  # laid out with it
-        return map_piece(job.map, layout, laid_out.places, factors, job.seed, progress=progress)
-    answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
-    answers = (behind_isolators(answer, job.isolations) for answer in answers)
-    exact = exact_statistics(answers, f_max=layout.f_max)
-    return exact_piece(exact, factors)
-
-
-def _runs(job: Job, layout: Layout, part: int, progress: Progress | None) -> Piece:
-    """Run some roads, and keep what is reported of them."""
-    factors = list(job.factors.values())
-    runs, mean = runs_with_mean(
-        layout, runs=job.parts[part], seed=job.seed, progress=_part(progress, 0.8)
-    )
-    first = part == 0 and job.modal
-    change = truncation_change(layout, runs, job.parts[0]) if first else None
-    runs = behind_isolators(runs, job.isolations)
-    mean = behind_isolators(mean, job.isolations)
-    reduced = reduce_rougher(
-        runs, mean, factors, averaging=job.averaging, quantities=job.quantities
-    )
-    history = runs.part(slice(0, 1)) if part == 0 else None
-    histories = [] if history is None else [history.rougher(mean, f) for f in factors]
-    return runs_piece(runs, reduced, histories, truncation=change)
-
-
-def _part(progress: Progress | None, length: float) -> Progress | None:
-    return None if progress is None else lambda share: progress(length * share)

@@ -53,4 +53,4 @@ def map_piece(
         for name in LEVELS:
             level = np.percentile(getattr(found, name), plan.percentile, axis=0)
             arrays[f"{i}.{name}"] = level
-    return Piece(arrays=arrays, notes={"mapped": True})
+    return Piece(role="map", arrays=arrays, notes={})

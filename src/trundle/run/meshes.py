@@ -77,14 +77,14 @@ def on_two_meshes(study: Study) -> tuple[Study, Study]:
     return small, replace(small, floor=build_floor(study.plan, mesh_size=half), mesh_size=half)
 
 
-def compare_meshes(study: Study, *, report: Tell | None = None) -> MeshComparison:
+def compare_meshes(study: Study, *, tell: Tell | None = None) -> MeshComparison:
     """Compute a study's first case on its mesh and on half of it.
 
     Parameters
     ----------
     study : Study
         A checked study.
-    report : callable, optional
+    tell : callable, optional
         Told what is being done and the share done.
 
     Returns
@@ -92,7 +92,7 @@ def compare_meshes(study: Study, *, report: Tell | None = None) -> MeshCompariso
     MeshComparison
         Of the first case on the first road, by the method that carries the verdict, or the first.
     """
-    tell = report or silent
+    told = tell or silent
     both = on_two_meshes(study)
     spectra: list[BandSpectra] = []
     whole = np.ones(len(mid_band_frequencies()), dtype=bool)
@@ -100,7 +100,7 @@ def compare_meshes(study: Study, *, report: Tell | None = None) -> MeshCompariso
     for one, start, share in zip(both, (0.0, 0.17), (0.17, 0.83), strict=True):
         result = run_study(
             one,
-            report=lambda what, done, a=start, b=share, s=one.mesh_size: tell(
+            tell=lambda what, done, a=start, b=share, s=one.mesh_size: told(
                 f"{s:g} m mesh: {what}", a + b * done
             ),
         )

@@ -1,18 +1,17 @@
-"""Tell how much of a study is done."""
+"""Tell how much is done."""
 
 from __future__ import annotations
 
 import threading
 from collections.abc import Iterable, Mapping
 
-from trundle._progress import Tell
-from trundle.run.jobs import Job
+from trundle._progress import Progress, Tell
 
 __all__ = ["Bar"]
 
 
 class Bar:
-    """Tell the share of a study that is done, by what each part costs; from any thread."""
+    """Tell the share that is done, by what each task costs; from any thread."""
 
     def __init__(self, tell: Tell, base: float, costs: Mapping[str, float]) -> None:
         self._tell, self._base = tell, base
@@ -21,21 +20,25 @@ class Bar:
         self._shares = dict.fromkeys(self._costs, 0.0)
         self._lock = threading.Lock()
 
-    def begin(self, job: Job) -> None:
-        """Tell that a job is begun."""
+    def begin(self, label: str) -> None:
+        """Tell what is begun."""
         with self._lock:
-            at = "" if job.speed is None else f" at {3.6 * job.speed:.3g} km/h"
-            self._label = f"{job.case.name}{at}, {job.method.name}"
+            self._label = label
             self._show()
 
-    def part(self, name: str, share: float) -> None:
-        """Tell that a share of a piece is done."""
-        with self._lock:
-            self._shares[name] = share
-            self._show()
+    def teller(self, name: str) -> Progress:
+        """Return what is told the share of a task that is done."""
+
+        def tell(share: float) -> None:
+            """Tell it."""
+            with self._lock:
+                self._shares[name] = share
+                self._show()
+
+        return tell
 
     def finished(self, names: Iterable[str]) -> None:
-        """Tell that pieces are done."""
+        """Tell that tasks are done."""
         with self._lock:
             self._shares |= dict.fromkeys(names, 1.0)
             self._show()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import nullcontext
 
 import numpy as np
 
@@ -13,17 +14,17 @@ from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import InputError
 from trundle.results.cells import Cell, CellKey
 from trundle.results.maps import MapKey, StudyMap, map_of
-from trundle.results.pieces import Piece, cell_of
+from trundle.results.pieces import cell_of
 from trundle.results.study_result import StudyResult
-from trundle.run.estimate import shares_of
-from trundle.run.in_threads import compute_here
+from trundle.run.checkpoint import InMemory, PieceStore
+from trundle.run.estimate import seconds_of_modes, size_of
+from trundle.run.executor import Batch, Executor, carry_out
+from trundle.run.floors import Floors
 from trundle.run.jobs import Job, lay_out_job, plan_jobs
 from trundle.run.mode_cache import modes_of
 from trundle.run.progress import Bar
-from trundle.run.scale_out import Cluster
-from trundle.run.unfinished import InMemory, PieceStore
-from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
-from trundle.structure import Floor
+from trundle.run.tasks import tasks_of
+from trundle.run.threads import Threads
 from trundle.study.model import Study
 
 __all__ = ["run_study"]
@@ -33,9 +34,9 @@ __all__ = ["run_study"]
 def run_study(
     study: Study,
     *,
-    report: Tell | None = None,
+    tell: Tell | None = None,
     store: PieceStore | None = None,
-    cluster: Cluster | None = None,
+    executor: Executor | None = None,
 ) -> StudyResult:
     """Run every case on every road by every method.
 
@@ -43,54 +44,45 @@ def run_study(
     ----------
     study : Study
         A checked study.
-    report : callable, optional
+    tell : callable, optional
         Told what is being done and the share done.
     store : PieceStore, optional
         Where finished pieces are kept; those found there are not computed again.
-    cluster : Cluster, optional
-        Where pieces are computed; in this process unless given.
+    executor : Executor, optional
+        Who computes; threads of this process unless given.
 
     Returns
     -------
     StudyResult
-        Reduced results; the same study gives the same bits, whatever computes it.
+        Reduced results; the same study gives the same bits, whoever computes it.
     """
-    tell = report or silent
+    tell = tell or silent
     store = store if store is not None else InMemory()
     jobs = plan_jobs(study)
-    share, costs = shares_of(study, jobs)
+    of_modes = seconds_of_modes(study, jobs)
+    costs = {t.name: t.seconds(size_of(study, job)) for job in jobs for t in tasks_of(job)}
+    share = of_modes / (of_modes + sum(costs.values()))
     modes = _all_modes(study, lambda what, done: tell(what, share * done))
-    bar = Bar(tell, share, costs)
-    floors = _Floors(study.floor, modes, jobs)
-    missing = {job: [i for i, name in enumerate(job.pieces) if not store.has(name)] for job in jobs}
-    bar.finished(
-        job.pieces[i] for job in jobs for i in range(len(job.pieces)) if i not in missing[job]
-    )
-
-    def keep(name: str, piece: Piece) -> None:
-        """Keep a finished piece, and tell of it."""
-        store.save(name, piece)
-        bar.finished([name])
-
-    if cluster is None:
-        compute_here(
-            missing,
-            lambda job: lay_out_job(job, floors.of(job)),
-            begin=bar.begin,
-            progress=bar.part,
-            done=keep,
+    floors = Floors(study.floor, modes, jobs)
+    batches = [
+        Batch(
+            label=_label(job),
+            job=job,
+            tasks=tasks_of(job),
+            floor=study.floor,
+            lay_out=lambda job=job: lay_out_job(job, floors.of(job)),
         )
-    else:
-        with repeatable():
-            for job, parts in missing.items():
-                if parts:
-                    bar.begin(job)
-                    carrier = lay_out_job(job, floors.of(job)) if job.modal else study.floor
-                    cluster.submit(job, parts, carrier)
-                    cluster.collect(keep, wait=False)
-            cluster.collect(keep, wait=True)
+        for job in jobs
+    ]
+    with nullcontext(executor) if executor is not None else Threads() as who:
+        carry_out(batches, who, store, Bar(tell, share, costs))
     tell("done", 1.0)
     return _result(study, jobs, store, modes)
+
+
+def _label(job: Job) -> str:
+    at = "" if job.speed is None else f" at {3.6 * job.speed:.3g} km/h"
+    return f"{job.case.name}{at}, {job.method.name}"
 
 
 def _result(
@@ -99,7 +91,7 @@ def _result(
     found: dict[CellKey, Cell] = {}
     maps: dict[MapKey, StudyMap] = {}
     for job in jobs:
-        pieces = [store.load(name) for name in job.pieces]
+        pieces = [store.load(task.name) for task in tasks_of(job)]
         for i, (road, factor) in enumerate(job.factors.items()):
             key = CellKey(job.case.name, road, job.method.name)
             if job.speed is None:
@@ -132,36 +124,6 @@ def _in_order(study: Study, maps: Mapping[MapKey, StudyMap]) -> dict[MapKey, Stu
         for road in study.roads
     )
     return {key: maps[key] for key in keys if key in maps}
-
-
-class _Floors:
-    """Prepare the floor for each method once, and hold one of them at a time."""
-
-    def __init__(self, floor: Floor, modes: Modes | None, jobs: tuple[Job, ...]) -> None:
-        self._floor, self._modes = floor, modes
-        self._flexibility = StaticFlexibility(floor)
-        # All routes, whatever is missing: a resumed run must solve for the same things together.
-        coupled = [job for job in jobs if job.modal and isinstance(job.method.interaction, Coupled)]
-        self._routes = {crossing.route: crossing for job in coupled for crossing in job.crossings}
-        self._held: tuple[str, PreparedFloor] | None = None
-
-    def of(self, job: Job) -> PreparedFloor:
-        """Return the floor as a job's method needs it."""
-        name, interaction = job.method.name, job.method.interaction
-        if self._routes:
-            self._flexibility.cover(tuple(self._routes.values()))
-            self._routes = {}
-        if self._held is None or self._held[0] != name:
-            self._held = None  # lets go of the last one's factor first
-            prepared = prepare(
-                self._floor,
-                interaction.integration,
-                interaction.damping,
-                modes=self._modes,
-                flexibility=self._flexibility,
-            )
-            self._held = (name, prepared)
-        return self._held[1]
 
 
 def _keys(study: Study) -> Iterator[CellKey]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from trundle.mitigate.sweep import Outcome, Sweep
+from trundle.mitigate.outcome import Outcome, Sweep
 from trundle.units import KMH
 from trundle.views.verdicts import strictest_passed
 

@@ -13,7 +13,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from trundle.mitigate.sweep import Outcome, Sweep
+from trundle.mitigate.outcome import Outcome, Sweep
 from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
 from trundle.units import KMH
 from trundle.views.mitigation import NONE, PARTLY, UNKNOWN, middle_curve, strictest

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from trundle import __version__
 from trundle._csv import write_csv
-from trundle.mitigate.sweep import Sweep
+from trundle.mitigate.outcome import Sweep
 from trundle.report.figures import mitigation
 from trundle.report.html import embedded, template
 from trundle.views.mitigation import MARGIN_HEADINGS, PARTLY, margin_rows, mitigation_rows

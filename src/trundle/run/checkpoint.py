@@ -32,7 +32,7 @@ __all__ = ["InMemory", "OnDisk", "PieceStore", "unfinished_folder", "unfinished_
 
 _MARK = "trundle-unfinished.json"
 _NOTES = "notes as JSON"
-_FORMAT = 5  # of the pieces; another one starts anew
+_FORMAT = 6  # of the pieces; another one starts anew
 
 
 @runtime_checkable
@@ -99,7 +99,8 @@ class OnDisk:
 
     def save(self, name: str, piece: Piece) -> None:
         """Write a piece aside, then rename it into place."""
-        notes = np.frombuffer(json.dumps(piece.notes).encode(), dtype=np.uint8)
+        said = {"role": piece.role, "notes": piece.notes}
+        notes = np.frombuffer(json.dumps(said).encode(), dtype=np.uint8)
         with named_disk_errors(self._file(name), "pieces finished before are kept"):
             write_kept(self._file(name), {**piece.arrays, _NOTES: notes}, self._label(name))
         self._sound.add(name)
@@ -129,10 +130,10 @@ class OnDisk:
         if arrays is None or _NOTES not in arrays:
             return None
         try:
-            notes = json.loads(arrays.pop(_NOTES).tobytes())
-        except (ValueError, RecursionError):
+            said = json.loads(arrays.pop(_NOTES).tobytes())
+            return Piece(role=said["role"], arrays=arrays, notes=dict(said["notes"]))
+        except (ValueError, TypeError, KeyError, RecursionError):
             return None
-        return Piece(arrays=arrays, notes=notes) if isinstance(notes, dict) else None
 
     def _files(self) -> list[Path]:
         return sorted(self._store.glob("*.piece"))
@@ -148,7 +149,9 @@ def unfinished_folder(out: Path) -> Path:
 
 
 @contextmanager
-def unfinished_of(study: Study, out: Path, *, fresh: bool = False) -> Generator[OnDisk]:
+def unfinished_of(
+    study: Study, out: Path, *, fresh: bool = False, also: object = None
+) -> Generator[OnDisk]:
     """Open the pieces of a run, those of an earlier one of the same study if it was stopped.
 
     When all goes well the folder is removed at the end; after an interrupt it stays.
@@ -161,6 +164,8 @@ def unfinished_of(study: Study, out: Path, *, fresh: bool = False) -> Generator[
         Its results folder; the pieces stand beside it.
     fresh : bool
         Begin anew even if pieces are there.
+    also : object
+        What decides the bits of a piece beside the study, see `digest_of`.
 
     Raises
     ------
@@ -179,7 +184,7 @@ def unfinished_of(study: Study, out: Path, *, fresh: bool = False) -> Generator[
     with named_disk_errors(folder, "nothing was written"):
         folder.mkdir(parents=True, exist_ok=True)
     with _locked(folder / "lock"):
-        store = _opened(folder, _fingerprint(study), fresh=fresh)
+        store = _opened(folder, _fingerprint(study, also), fresh=fresh)
         try:
             yield store
         except BaseException:
@@ -213,7 +218,7 @@ def _remove(store: OnDisk, made: list[Path]) -> None:
             folder.rmdir()
 
 
-def _fingerprint(study: Study) -> str:
+def _fingerprint(study: Study, also: object) -> str:
     """Return all that decides the bits of a piece."""
     values = {
         "format": _FORMAT,
@@ -225,6 +230,7 @@ def _fingerprint(study: Study) -> str:
         "floor": study.floor.content_hash,
         # also of what the study's file only names: criteria, profiles, tables
         "content": digest_of(replace(study, source="")),
+        "also": digest_of(also),
     }
     return json.dumps(values, indent=1) + "\n"
 

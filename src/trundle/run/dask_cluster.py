@@ -1,4 +1,4 @@
-"""Compute the parts of a study on the workers of a dask cluster."""
+"""Compute tasks on the workers of a dask cluster."""
 
 from __future__ import annotations
 
@@ -7,69 +7,60 @@ import hashlib
 import logging
 import os
 import platform
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Generator, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from trundle import __version__
+from trundle._progress import Progress
 from trundle.dynamics import repeatable
 from trundle.errors import ComputationError, InputError
 from trundle.results.pieces import Piece
-from trundle.run.jobs import Job, LaidOut, compute, lay_out_job
+from trundle.run.executor import Shared
+from trundle.run.jobs import LaidOut, lay_out_job
+from trundle.run.tasks import Task
 from trundle.simulate import PreparedFloor, prepare
-from trundle.structure import Floor
 
 __all__ = ["Cluster", "cluster_at", "local_cluster"]
 
 _RETRIES = 3  # times that a part is tried again when its worker has died
 
-Done = Callable[[str, Piece], None]
-
 
 class Cluster:
-    """Send parts to workers, and hand over what they leave."""
+    """Send tasks to workers, and give what they leave."""
+
+    here = False
 
     def __init__(self, client: Any) -> None:  # noqa: ANN401 - dask has no types
         self._client = client
         # what was sent, by its identity; held, for another may take the place of one let go of
-        self._sent: dict[int, tuple[LaidOut | Floor, Any]] = {}
+        self._sent: dict[int, tuple[Shared, Any]] = {}
         self._pending: dict[Any, _Sent] = {}
 
-    def submit(self, job: Job, parts: Iterable[int], carrier: LaidOut | Floor) -> None:
-        """Send parts of a job; its layout, or its floor, travels once to each worker.
-
-        Parameters
-        ----------
-        job : Job
-            The job.
-        parts : iterable of int
-            Which of its parts.
-        carrier : LaidOut or Floor
-            Its layout, or the floor that a worker prepares for itself.
-        """
-        for part in parts:
-            self._send(_Sent(job=job, part=part, carrier=carrier, tries=1))
+    def submit(self, task: Task, shared: Shared, progress: Progress) -> None:
+        """Send a task; what it shares travels once to each worker, and progress stays there."""
+        del progress
+        self._send(_Sent(task=task, shared=shared, tries=1))
 
     def _send(self, what: _Sent) -> None:
-        place = id(what.carrier)
+        place = id(what.shared)
         if place not in self._sent:
-            self._sent[place] = (what.carrier, self._client.scatter(what.carrier, hash=False))
+            self._sent[place] = (what.shared, self._client.scatter(what.shared, hash=False))
         future = self._client.submit(
             _compute,
-            what.job,
+            what.task,
             self._sent[place][1],
-            what.part,
             _own_source(),
-            key=f"{what.name}-{what.tries}",
+            key=f"{what.task.name}-{what.tries}",
             retries=_RETRIES,
             pure=False,
         )
         self._pending[future] = what
 
-    def collect(self, done: Done, *, wait: bool) -> None:
-        """Hand over finished pieces: those there already, or all, as they come."""
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Piece]]:
+        """Give finished pieces: those there already, or all, as they come."""
         distributed = _distributed()
         while self._pending:
             if wait:
@@ -77,9 +68,14 @@ class Cluster:
                 with suppress(distributed.CancelledError):
                     distributed.wait(list(self._pending), return_when="FIRST_COMPLETED")
                 self._check_alive()
-            ready = [future for future in self._pending if future.done()]
-            for future in ready:
-                self._take(future, done)
+            for future in [future for future in self._pending if future.done()]:
+                what = self._pending.pop(future)
+                piece = self._piece(future, what)
+                future.release()
+                if not any(other.shared is what.shared for other in self._pending.values()):
+                    self._sent.pop(id(what.shared), None)
+                if piece is not None:
+                    yield what.task.name, piece
             if not wait:
                 return
 
@@ -91,69 +87,60 @@ class Cluster:
                 "command goes on from there"
             )
 
-    def _take(self, future: Any, done: Done) -> None:  # noqa: ANN401
-        """Hand over a part's piece, or send the part again if what it needs died with a worker."""
+    def _piece(self, future: Any, what: _Sent) -> Piece | None:  # noqa: ANN401
+        """Return a task's piece; if what it needs died with a worker, send the task again."""
         distributed = _distributed()
-        what = self._pending.pop(future)
+        name = what.task.name
         try:
-            done(what.name, future.result())
+            return future.result()
         except distributed.CancelledError as error:
             self._check_alive()
             if what.tries > _RETRIES:
-                raise ComputationError(
-                    f"the cluster was lost while it computed {what.name}"
-                ) from error
-            lost = self._sent.pop(id(what.carrier), None)
+                raise ComputationError(f"the cluster was lost while it computed {name}") from error
+            lost = self._sent.pop(id(what.shared), None)
             if lost is not None and lost[1].status == "finished":
-                self._sent[id(what.carrier)] = lost
+                self._sent[id(what.shared)] = lost
             self._send(replace(what, tries=what.tries + 1))
+            return None
         except distributed.KilledWorker as error:
             raise ComputationError(
-                f"the workers that computed {what.name} died {_RETRIES} times, most likely for "
+                f"the workers that computed {name} died {_RETRIES} times, most likely for "
                 "want of memory; use fewer workers"
             ) from error
         except (TypeError, AttributeError, ImportError):
             # what another version of this program makes of the question
             _check_workers(self._client, "of this cluster")
             raise
-        future.release()
-        if not any(other.carrier is what.carrier for other in self._pending.values()):
-            self._sent.pop(id(what.carrier), None)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Sent:
-    """A part that workers were asked for."""
+    """A task that workers were asked for."""
 
-    job: Job
-    part: int
-    carrier: LaidOut | Floor
+    task: Task
+    shared: Shared
     tries: int
-
-    @property
-    def name(self) -> str:
-        return self.job.pieces[self.part]
 
 
 _kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last floor it prepared
 
 
-def _compute(job: Job, carrier: LaidOut | Floor, part: int, source: str) -> Piece:
-    """Compute a part, in a worker; one that joined late may have another source."""
+def _compute(task: Task, shared: Shared, source: str) -> Piece:
+    """Compute a task, in a worker; one that joined late may have another source."""
     if source != source_hash():
         raise ComputationError(
             f"a worker on {platform.node()} has another trundle than the process that asks; what "
             "was finished is kept: install the same one there, and run it again"
         )
     with repeatable():
-        if isinstance(carrier, LaidOut):
-            return compute(job, carrier, part)
-        interaction = job.method.interaction
-        key = (carrier.content_hash, str(interaction))
+        if isinstance(shared, LaidOut):
+            return task.compute(shared)
+        interaction = task.job.method.interaction
+        key = (shared.content_hash, str(interaction))
         if key not in _kept:
             _kept.clear()
-            _kept[key] = prepare(carrier, interaction.integration, interaction.damping)
-        return compute(job, lay_out_job(job, _kept[key]), part)
+            _kept[key] = prepare(shared, interaction.integration, interaction.damping)
+        return task.compute(lay_out_job(task.job, _kept[key]))
 
 
 @contextmanager

@@ -7,10 +7,12 @@ from typing import Any
 import pytest
 
 from studies import GOOD
+from trundle._progress import silent
 from trundle.errors import ComputationError, InputError
-from trundle.run import scale_out
+from trundle.run import dask_cluster
+from trundle.run.dask_cluster import Cluster, cluster_at, local_cluster
 from trundle.run.jobs import LaidOut, plan_jobs
-from trundle.run.scale_out import Cluster, cluster_at, local_cluster
+from trundle.run.tasks import tasks_of
 from trundle.study_file.build import load_study
 
 
@@ -43,21 +45,23 @@ class Client:
         self.scattered.append(carrier.layout)
         return Answered(carrier.layout)
 
-    def submit(self, _work, _job, carrier, _part, _source, **_options):
+    def submit(self, _work, _task, carrier, _source, **_options):
         return Answered(carrier.value)
 
 
 def test_a_layout_is_never_taken_for_one_that_was_let_go_of(tmp_path, monkeypatch):
     """Layouts come and go at the same place in memory; 50 jobs each get their own."""
     lost = SimpleNamespace(CancelledError=KeyError, KilledWorker=OSError)
-    monkeypatch.setattr(scale_out, "_distributed", lambda: lost)
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: lost)
     (tmp_path / "study.toml").write_text(GOOD)
-    job = plan_jobs(load_study(tmp_path / "study.toml"))[0]
+    tasks = tasks_of(plan_jobs(load_study(tmp_path / "study.toml"))[0])[:2]
     client, found = Client(), []
     cluster = Cluster(client)
     for i in range(50):
-        cluster.submit(job, range(2), LaidOut(layout=i, places=None))
-        cluster.collect(lambda _name, layout: found.append(layout), wait=False)
+        laid_out = LaidOut(layout=i, places=None)
+        for task in tasks:
+            cluster.submit(task, laid_out, silent)
+        found += [layout for _name, layout in cluster.finished(wait=False)]
     assert found == [i for i in range(50) for _ in range(2)]
     assert client.scattered == list(range(50))
     assert not cluster._sent  # nothing is held that no part waits for
@@ -95,8 +99,8 @@ def test_workers_with_another_source_are_refused(monkeypatch):
     ) as there:
         with cluster_at(there.scheduler_address):
             pass  # the same source
-        own = scale_out.source_hash
-        monkeypatch.setattr(scale_out, "_own_source", lambda: own() + "edited")
+        own = dask_cluster.source_hash
+        monkeypatch.setattr(dask_cluster, "_own_source", lambda: own() + "edited")
         with (
             pytest.raises(InputError, match="another trundle"),
             cluster_at(there.scheduler_address),
@@ -109,15 +113,16 @@ def test_a_lost_scheduler_is_named(monkeypatch, tmp_path):
     lost = SimpleNamespace(
         CancelledError=KeyError, KilledWorker=OSError, wait=lambda *_, **__: None
     )
-    monkeypatch.setattr(scale_out, "_distributed", lambda: lost)
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: lost)
     (tmp_path / "study.toml").write_text(GOOD)
-    job = plan_jobs(load_study(tmp_path / "study.toml"))[0]
+    first, second = tasks_of(plan_jobs(load_study(tmp_path / "study.toml"))[0])[:2]
     client = Client()
     cluster = Cluster(client)
-    cluster.submit(job, range(1), LaidOut(layout=1, places=None))
+    del second
+    cluster.submit(first, LaidOut(layout=1, places=None), silent)
     client.status = "closed"
     with pytest.raises(ComputationError, match="what was finished is kept"):
-        cluster.collect(lambda *_: None, wait=True)
+        list(cluster.finished(wait=True))
 
 
 def test_parts_lost_while_they_are_waited_for_are_sent_again(monkeypatch, tmp_path):
@@ -130,16 +135,16 @@ def test_parts_lost_while_they_are_waited_for_are_sent_again(monkeypatch, tmp_pa
             raise KeyError
 
     lost = SimpleNamespace(CancelledError=KeyError, KilledWorker=OSError, wait=wait)
-    monkeypatch.setattr(scale_out, "_distributed", lambda: lost)
+    monkeypatch.setattr(dask_cluster, "_distributed", lambda: lost)
     (tmp_path / "study.toml").write_text(GOOD)
-    job = plan_jobs(load_study(tmp_path / "study.toml"))[0]
-    found, cluster = [], Cluster(Client())
-    cluster.submit(job, range(2), LaidOut(layout=7, places=None))
-    cluster.collect(lambda _name, layout: found.append(layout), wait=True)
-    assert found == [7, 7]
+    first, second = tasks_of(plan_jobs(load_study(tmp_path / "study.toml"))[0])[:2]
+    cluster, laid_out = Cluster(Client()), LaidOut(layout=7, places=None)
+    for task in (first, second):
+        cluster.submit(task, laid_out, silent)
+    assert [layout for _name, layout in cluster.finished(wait=True)] == [7, 7]
 
 
 def test_every_part_asks_its_worker_for_its_source():
     """A worker may join when the work is under way; nothing of another's is stored."""
     with pytest.raises(ComputationError, match="has another trundle"):
-        scale_out._compute(None, None, 0, scale_out.source_hash() + "edited")
+        dask_cluster._compute(None, None, dask_cluster.source_hash() + "edited")

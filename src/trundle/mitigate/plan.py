@@ -1,0 +1,112 @@
+"""Plan what is run to try changes: each combination once, those of one slab together."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from trundle.mitigate.changes import Change, changed_study
+from trundle.mitigate.tasks import ChangesTask
+from trundle.road import RoadClass
+from trundle.run.jobs import Job, plan_jobs
+from trundle.study.model import Assessment, Case, MethodPlan, Study
+
+__all__ = ["Combination", "assessed", "plan_changes", "sharing_runs"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Combination:
+    """Hold what is run for some changes that differ by their isolators alone.
+
+    Attributes
+    ----------
+    changes : tuple of Change
+        The changes.
+    case : Case
+        What drives.
+    speed : float
+        Speed of every vehicle [m/s].
+    job : Job
+        What shares a layout.
+    """
+
+    changes: tuple[Change, ...]
+    case: Case
+    speed: float
+    job: Job
+
+    @property
+    def slab_thickness(self) -> float | None:
+        """Thickness of the slab if it is not the study's [m]."""
+        return self.changes[0].slab_thickness
+
+    @property
+    def label(self) -> str:
+        """What is told while it is run."""
+        return f"{self.changes[0].label}: {self.case.name} at {3.6 * self.speed:.3g} km/h"
+
+    def tasks(self, study: Study) -> tuple[ChangesTask, ...]:
+        """Return its tasks."""
+        variants = tuple(
+            changed_study(study, Change(isolation=change.isolation)).isolations
+            for change in self.changes
+        )
+        return tuple(
+            ChangesTask(job=self.job, number=i, variants=variants)
+            for i in range(len(self.job.parts))
+        )
+
+
+def plan_changes(
+    study: Study,
+    *,
+    changes: Sequence[Change],
+    speeds: Sequence[float],
+    roads: Sequence[str],
+    runs: int,
+) -> tuple[Combination, ...]:
+    """Return what is run for every change, speed and case, those of one slab in a row.
+
+    Parameters
+    ----------
+    study : Study
+        A study with criteria; its assessed method is used.
+    changes : sequence of Change
+        What is changed.
+    speeds : sequence of float
+        Speeds of every vehicle [m/s].
+    roads : sequence of str
+        Road classes; they share their runs.
+    runs : int
+        Runs of each combination.
+    """
+    classes = {name: RoadClass(name) for name in roads}  # pyright: ignore[reportArgumentType] - checked
+    found: list[Combination] = []
+    for i, together in enumerate(sharing_runs(changes)):
+        rest = replace(together[0], slab_thickness=None, isolation=None)
+        changed = replace(changed_study(study, rest), roads=classes, runs=runs, map=None)
+        changed = replace(changed, methods=(assessed(changed)[1],))
+        for (j, speed), (k, case) in itertools.product(enumerate(speeds), enumerate(study.cases)):
+            there = replace(changed.at_speed(speed), cases=(case,))
+            crossings = there.crossings(case, roads[0], there.methods[0])
+            (job,) = plan_jobs(replace(there, duration=there.long_enough(crossings)))
+            job = replace(job, name=f"change{i}-speed{j}-case{k}", n_waves=0)
+            found.append(Combination(changes=tuple(together), case=case, speed=speed, job=job))
+    return tuple(found)
+
+
+def sharing_runs(changes: Sequence[Change]) -> list[list[Change]]:
+    """Return changes that differ by their isolators alone together, those of one slab in a row."""
+    groups: dict[tuple[float, float, int], list[Change]] = {}
+    for change in changes:
+        key = (change.slab_thickness or 0.0, change.damping_ratio or 0.0, id(change.vehicle))
+        groups.setdefault(key, []).append(change)
+    return sorted(groups.values(), key=lambda group: group[0].slab_thickness or 0.0)
+
+
+def assessed(study: Study) -> tuple[Assessment, MethodPlan]:
+    """Return what a study with criteria is held against, and by which method."""
+    assessment = study.assessment
+    assert assessment is not None  # looked for before
+    return assessment, next(m for m in study.methods if m.name == assessment.method)

@@ -1,0 +1,83 @@
+"""Run one combination of changes, and keep what its runs leave behind each kind of isolator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from trundle._progress import Progress
+from trundle.response import behind_isolators, reduce_rougher
+from trundle.results.pieces import Piece, runs_piece
+from trundle.run.costs import Size, runs_seconds
+from trundle.run.jobs import Job, LaidOut
+from trundle.signals import Isolation
+from trundle.simulate import runs_with_mean
+
+__all__ = ["ChangesTask", "behind"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChangesTask:
+    """Run some roads once, for changes that differ by their isolators alone.
+
+    Attributes
+    ----------
+    job : Job
+        Whose part it is; its own isolators are not used.
+    number : int
+        Which of the job's parts.
+    variants : tuple of mapping of str to Isolation
+        What stands between floor and tool, by point, for each change.
+    """
+
+    job: Job
+    number: int
+    variants: tuple[Mapping[str, Isolation], ...]
+
+    @property
+    def name(self) -> str:
+        """Name of what it leaves."""
+        return f"{self.job.name}-runs{self.number:04d}"
+
+    def seconds(self, size: Size) -> float:
+        """Return about how long it takes."""
+        return runs_seconds(self.job, self.job.parts[self.number], size)
+
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+        """Run the roads on the first class, and scale the others from them, for each change."""
+        job = self.job
+        runs, mean = runs_with_mean(
+            laid_out.layout, runs=job.parts[self.number], seed=job.seed, progress=progress
+        )
+        found = [
+            runs_piece(
+                behind_isolators(runs, isolations),
+                reduce_rougher(
+                    behind_isolators(runs, isolations),
+                    behind_isolators(mean, isolations),
+                    list(job.factors.values()),
+                    averaging=job.averaging,
+                    quantities=job.quantities,
+                ),
+                [],
+                truncation=None,
+            )
+            for isolations in self.variants
+        ]
+        arrays = {
+            f"{_prefix(k)}{name}": values
+            for k, piece in enumerate(found)
+            for name, values in piece.arrays.items()
+        }
+        return Piece(role="changes", arrays=arrays, notes=found[0].notes)
+
+
+def behind(piece: Piece, variant: int) -> Piece:
+    """Return what the runs of a `ChangesTask` leave for one of its changes."""
+    start = _prefix(variant)
+    own = {n.removeprefix(start): v for n, v in piece.arrays.items() if n.startswith(start)}
+    return Piece(role="runs", arrays=own, notes=piece.notes)
+
+
+def _prefix(variant: int) -> str:
+    return f"change{variant}."

@@ -1,0 +1,101 @@
+"""Say what whoever computes tasks must offer: threads of this process, or workers elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias, runtime_checkable
+
+from trundle._progress import Progress
+from trundle.dynamics import repeatable
+from trundle.results.pieces import Piece
+from trundle.run.checkpoint import PieceStore
+from trundle.run.jobs import Job, LaidOut
+from trundle.run.progress import Bar
+from trundle.run.tasks import Task
+from trundle.structure import Floor
+
+__all__ = ["Batch", "Executor", "Shared", "carry_out"]
+
+Shared: TypeAlias = LaidOut | Floor
+"""What the tasks of a job share: its layout, or the floor that a worker lays it out on itself."""
+
+
+@runtime_checkable
+class Executor(Protocol):
+    """Computes tasks, in any order, anywhere."""
+
+    @property
+    def here(self) -> bool:
+        """Whether this process computes: it then needs the layout itself."""
+        ...
+
+    def submit(self, task: Task, shared: Shared, progress: Progress) -> None:
+        """Take a task; wait as long as there is no room for it."""
+        ...
+
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Piece]]:
+        """Give the names of finished tasks with what they leave: those at hand, or all."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Batch:
+    """Hold tasks that share a layout.
+
+    Attributes
+    ----------
+    label : str
+        What is told while they are computed.
+    job : Job
+        Whose tasks they are.
+    tasks : sequence of Task
+        The tasks.
+    floor : Floor
+        The floor, before it is prepared.
+    lay_out : callable
+        Lays out what they share, when their turn has come.
+    """
+
+    label: str
+    job: Job
+    tasks: Sequence[Task]
+    floor: Floor
+    lay_out: Callable[[], LaidOut]
+
+
+def carry_out(batches: Sequence[Batch], executor: Executor, store: PieceStore, bar: Bar) -> None:
+    """Compute the tasks whose pieces are not kept yet, and keep each as it is finished.
+
+    Parameters
+    ----------
+    batches : sequence of Batch
+        What is to be computed.
+    executor : Executor
+        Who computes.
+    store : PieceStore
+        Where pieces are kept.
+    bar : Bar
+        Told what is done.
+    """
+    for batch in batches:
+        bar.finished(task.name for task in batch.tasks if store.has(task.name))
+
+    def keep(*, wait: bool) -> None:
+        """Keep what is finished, and tell of it."""
+        for name, piece in executor.finished(wait=wait):
+            store.save(name, piece)
+            bar.finished([name])
+
+    # One limit around all, layouts too: threads that set their own would undo each other's.
+    with repeatable():
+        for batch in batches:
+            missing = [task for task in batch.tasks if not store.has(task.name)]
+            if missing:
+                bar.begin(batch.label)
+                # A worker prepares a floor for direct integration itself: factors do not travel.
+                shared = batch.lay_out() if executor.here or batch.job.modal else batch.floor
+                for task in missing:
+                    executor.submit(task, shared, bar.teller(task.name))
+                    keep(wait=False)
+        keep(wait=True)

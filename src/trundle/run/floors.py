@@ -1,0 +1,43 @@
+"""Prepare a floor for the methods of some jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from trundle.dynamics import Modes
+from trundle.run.jobs import Job
+from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
+from trundle.structure import Floor
+from trundle.study.model import MethodPlan
+
+__all__ = ["Floors"]
+
+
+class Floors:
+    """Prepare the floor for each method once, and hold one of them at a time."""
+
+    def __init__(self, floor: Floor, modes: Modes | None, jobs: Sequence[Job]) -> None:
+        self._floor, self._modes = floor, modes
+        self._flexibility = StaticFlexibility(floor)
+        # All routes, whatever is missing: a resumed run must solve for the same things together.
+        coupled = [job for job in jobs if job.modal and isinstance(job.method.interaction, Coupled)]
+        self._routes = {crossing.route: crossing for job in coupled for crossing in job.crossings}
+        self._held: tuple[MethodPlan, PreparedFloor] | None = None
+
+    def of(self, job: Job) -> PreparedFloor:
+        """Return the floor as a job's method needs it."""
+        method, interaction = job.method, job.method.interaction
+        if self._routes:
+            self._flexibility.cover(tuple(self._routes.values()))
+            self._routes = {}
+        if self._held is None or self._held[0] is not method:
+            self._held = None  # lets go of the last one's factor first
+            prepared = prepare(
+                self._floor,
+                interaction.integration,
+                interaction.damping,
+                modes=self._modes,
+                flexibility=self._flexibility,
+            )
+            self._held = (method, prepared)
+        return self._held[1]

@@ -1,0 +1,150 @@
+"""The parts of a job as values: each has a name, a cost, and can be computed anywhere, any time.
+
+A new kind of part is a class here, or in the room that needs it: whoever computes parts, keeps them
+or tells how much is done knows of them no more than `Task` says.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from trundle._progress import Progress
+from trundle.response import behind_isolators, exact_statistics, reduce_rougher
+from trundle.results.pieces import Piece, exact_piece, runs_piece
+from trundle.run.costs import Size, exact_seconds, map_seconds, runs_seconds
+from trundle.run.jobs import Job, LaidOut
+from trundle.run.map_part import map_piece
+from trundle.simulate import harmonics, runs_with_mean, truncation_change
+
+__all__ = ["ExactTask", "MapTask", "RunsTask", "Task", "tasks_of"]
+
+
+@runtime_checkable
+class Task(Protocol):
+    """A part of a job."""
+
+    @property
+    def job(self) -> Job:
+        """Whose part it is."""
+        ...
+
+    @property
+    def name(self) -> str:
+        """Name of what it leaves, unique in the study and fit for a file."""
+        ...
+
+    def seconds(self, size: Size) -> float:
+        """Return about how long it takes on two cores, on a floor of some size [s]."""
+        ...
+
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+        """Compute it: the same bits wherever and whenever."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RunsTask:
+    """Run some roads, and keep what is reported of them.
+
+    Attributes
+    ----------
+    job : Job
+        Whose part it is.
+    number : int
+        Which of the job's parts; the first keeps histories and what modes left out change.
+    """
+
+    job: Job
+    number: int
+
+    @property
+    def name(self) -> str:
+        """Name of what it leaves."""
+        return f"{self.job.name}-runs{self.number:04d}"
+
+    def seconds(self, size: Size) -> float:
+        """Return about how long it takes."""
+        return runs_seconds(self.job, self.job.parts[self.number], size)
+
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+        """Run the roads on the first class, and scale the others from them."""
+        job, layout = self.job, laid_out.layout
+        factors = list(job.factors.values())
+        runs, mean = runs_with_mean(
+            layout, runs=job.parts[self.number], seed=job.seed, progress=_most(progress)
+        )
+        first = self.number == 0
+        change = truncation_change(layout, runs, job.parts[0]) if first and job.modal else None
+        runs = behind_isolators(runs, job.isolations)
+        mean = behind_isolators(mean, job.isolations)
+        reduced = reduce_rougher(
+            runs, mean, factors, averaging=job.averaging, quantities=job.quantities
+        )
+        one = runs.part(slice(0, 1))
+        histories = [one.rougher(mean, factor) for factor in factors] if first else []
+        return runs_piece(runs, reduced, histories, truncation=change)
+
+
+def _most(progress: Progress | None) -> Progress | None:
+    """Return what is told four fifths of a progress: what is made of the runs takes the rest."""
+    return None if progress is None else lambda share: progress(0.8 * share)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ExactTask:
+    """Sum the answers to all waves of the road: statistics without sampling."""
+
+    job: Job
+
+    @property
+    def name(self) -> str:
+        """Name of what it leaves."""
+        return f"{self.job.name}-exact"
+
+    def seconds(self, size: Size) -> float:
+        """Return about how long it takes."""
+        return exact_seconds(self.job, size)
+
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+        """Answer every wave, and add up the squares."""
+        job, layout = self.job, laid_out.layout
+        answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
+        answers = (behind_isolators(answer, job.isolations) for answer in answers)
+        exact = exact_statistics(answers, f_max=layout.f_max)
+        return exact_piece(exact, list(job.factors.values()))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MapTask:
+    """Map a job's case over the floor."""
+
+    job: Job
+
+    @property
+    def name(self) -> str:
+        """Name of what it leaves."""
+        return f"{self.job.name}-map"
+
+    def seconds(self, size: Size) -> float:
+        """Return about how long it takes."""
+        del size
+        return map_seconds(self.job)
+
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+        """Carry the contact forces of all runs to every place."""
+        job, plan, places = self.job, self.job.map, laid_out.places
+        assert plan is not None  # else it is no task of the job
+        assert places is not None  # laid out with the map
+        factors = list(job.factors.values())
+        return map_piece(plan, laid_out.layout, places, factors, job.seed, progress=progress)
+
+
+def tasks_of(job: Job) -> tuple[Task, ...]:
+    """Return the parts of a job, its runs first."""
+    tasks: list[Task] = [RunsTask(job=job, number=i) for i in range(len(job.parts))]
+    if job.n_waves:
+        tasks.append(ExactTask(job=job))
+    if job.map is not None:
+        tasks.append(MapTask(job=job))
+    return tuple(tasks)

@@ -1,0 +1,93 @@
+"""Compute tasks in threads of this process."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from types import TracebackType
+
+from trundle._progress import Progress
+from trundle._threads import n_threads
+from trundle.results.pieces import Piece
+from trundle.run.executor import Shared
+from trundle.run.jobs import LaidOut
+from trundle.run.tasks import Task
+
+__all__ = ["Threads"]
+
+_AT_ONCE = 2  # while one task draws its roads or is filtered, another keeps the processors busy
+
+
+class _StoppedError(Exception):
+    """Ends a task whose result nobody waits for any more."""
+
+
+class Threads:
+    """Compute some tasks at once, within a ``with`` block; an error there ends them all."""
+
+    here = True
+
+    def __init__(self) -> None:
+        self._at_once = min(_AT_ONCE, n_threads())
+        self._stop = threading.Event()
+        self._running: dict[Future[Piece], str] = {}
+        self._done: list[tuple[str, Future[Piece]]] = []
+        self._pool = ThreadPoolExecutor(self._at_once)
+
+    def __enter__(self) -> Threads:
+        """Begin."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """End; after an error nobody waits for what is running."""
+        del kind, traceback
+        if error is not None:
+            self._stop.set()
+        self._pool.shutdown()
+
+    def submit(self, task: Task, shared: Shared, progress: Progress) -> None:
+        """Take a task, when so few are running that there is room.
+
+        A sparse solver answers one caller at a time: a task that is not modal has no other beside.
+        """
+        assert isinstance(shared, LaidOut)  # `here` says that layouts are needed
+        self._collect(self._at_once if task.job.modal else 0)
+        self._running[self._pool.submit(self._run, task, shared, progress)] = task.name
+        self._collect(self._at_once if task.job.modal else 0)
+
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Piece]]:
+        """Give what is finished, or all as they come."""
+        while True:
+            yield from self._taken()
+            if not wait or not self._running:
+                return
+            self._collect(len(self._running) - 1)
+
+    def _taken(self) -> Iterator[tuple[str, Piece]]:
+        """Give what is at hand; an error comes after all that went well."""
+        taken, self._done = self._done, []
+        for name, future in sorted(taken, key=lambda pair: pair[1].exception() is not None):
+            yield name, future.result()
+
+    def _collect(self, at_most: int) -> None:
+        """Wait until so many tasks are running."""
+        while len(self._running) > at_most:
+            for future in wait(self._running, return_when=FIRST_COMPLETED).done:
+                self._done.append((self._running.pop(future), future))
+
+    def _run(self, task: Task, laid_out: LaidOut, progress: Progress) -> Piece:
+        """Compute a task, in a thread."""
+
+        def tell(share: float) -> None:
+            """Tell the share done, or end the task."""
+            if self._stop.is_set():
+                raise _StoppedError
+            progress(share)
+
+        return task.compute(laid_out, tell)

@@ -10,7 +10,7 @@ from studies import GOOD
 from trundle.errors import FitnessWarning, InputError
 from trundle.mitigate.changes import Change, each_change, every_combination
 from trundle.mitigate.mitigation import resonance_speeds, try_changes
-from trundle.results.pieces import Piece
+from trundle.results.parts import ChangesPart
 from trundle.run.checkpoint import InMemory, unfinished_of
 from trundle.run.dask_cluster import local_cluster
 from trundle.run.threads import Threads
@@ -241,7 +241,7 @@ def test_a_sweep_of_other_changes_takes_nothing_over(tmp_path):
     for also, found in ((("slab", 0.3), 0), (("slab", 0.3), 1), (("slab", 0.31), 0)):
         with pytest.raises(KeyboardInterrupt), unfinished_of(study, out, also=also) as disk:
             assert disk.n_found == found
-            disk.save("a", Piece(role="changes", arrays={"x": np.arange(3.0)}, notes={}))
+            disk.save("a", ChangesPart(variants=()))
             raise KeyboardInterrupt
 
 

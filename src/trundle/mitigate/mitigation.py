@@ -17,9 +17,8 @@ from trundle.errors import InputError
 from trundle.mitigate.changes import Change, changed_study
 from trundle.mitigate.outcome import Outcome, Sweep
 from trundle.mitigate.plan import Combination, assessed, plan_changes
-from trundle.mitigate.tasks import behind
 from trundle.response import few_runs_warnings, level_warnings
-from trundle.results.pieces import SampledRuns, sampled_runs
+from trundle.results.parts import ChangesPart, RunsPart, joined
 from trundle.run.checkpoint import InMemory, PieceStore
 from trundle.run.estimate import mode_seconds, size_of
 from trundle.run.executor import Batch, Executor, carry_out
@@ -203,24 +202,22 @@ def _resonances(
 
 def _outcomes(study: Study, one: Combination, store: PieceStore) -> list[list[Outcome]]:
     """Hold the runs of a combination against the criteria, by change and road."""
-    pieces = [store.load(task.name) for task in one.tasks(study)]
-    found: list[list[Outcome]] = []
-    for k, change in enumerate(one.changes):
-        own = [behind(piece, k) for piece in pieces]
-        runs = [sampled_runs(own, road) for road in range(len(one.job.factors))]
-        found.append(_of_change(study, one, change.label, runs))
-    return found
+    parts = [store.load(task.name) for task in one.tasks(study)]
+    by_part = [part.variants for part in parts if isinstance(part, ChangesPart)]
+    by_change = [joined(variants) for variants in zip(*by_part, strict=True)]
+    return [
+        _of_change(study, one, change.label, runs)
+        for change, runs in zip(one.changes, by_change, strict=True)
+    ]
 
 
-def _of_change(
-    study: Study, one: Combination, label: str, found: Sequence[SampledRuns]
-) -> list[Outcome]:
+def _of_change(study: Study, one: Combination, label: str, runs: RunsPart) -> list[Outcome]:
     """Hold the runs of one change against the criteria, on every road."""
     assessment, _ = assessed(study)
-    first = found[0]
+    first = runs.reduced[0]
     doubts = (
-        *level_warnings(assessment.averaging, first.ends, levels=first.reduced.spectra),
-        *few_runs_warnings(len(first.reduced.rms_velocity), assessment.percentile),
+        *level_warnings(assessment.averaging, runs.ends, levels=first.spectra),
+        *few_runs_warnings(len(first.rms_velocity), assessment.percentile),
     )
     return [
         Outcome(
@@ -229,7 +226,7 @@ def _of_change(
             speed=one.speed,
             road=road,
             verdicts=assess_reduced(
-                runs.reduced,
+                runs.reduced[i],
                 assessment.criteria,
                 percentile=assessment.percentile,
                 top=runs.top,
@@ -237,7 +234,7 @@ def _of_change(
                 events=assessment.events,
             ),
             excited_to=runs.coverage.excited_to,
-            warnings=(*runs.warnings, *doubts),
+            warnings=(*runs.doubts(i), *doubts),
         )
-        for road, runs in zip(one.job.factors, found, strict=True)
+        for i, road in enumerate(one.job.factors)
     ]

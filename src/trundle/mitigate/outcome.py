@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trundle._html import html_table
 from trundle.criteria import Verdict
 from trundle.errors import FitnessWarning
 from trundle.study.model import Study
@@ -71,6 +72,25 @@ class Sweep:
     runs: int
     outcomes: tuple[Outcome, ...]
     resonances: Mapping[tuple[str, str], tuple[float, ...]]
+
+    def __repr__(self) -> str:
+        """Say in a line what was tried."""
+        return (
+            f"<Sweep of {self.study.title!r}: {len(self.changes)} changes at {len(self.speeds)} "
+            f"speeds on {len(self.roads)} road classes, {self.runs} runs each>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Show every verdict as a table."""
+        return html_table(
+            self.study.title,
+            ("change", "vehicle on", "speed [m/s]", "road", "point", "criterion", "verdict"),
+            (
+                (o.change, o.case, f"{o.speed:.3g}", o.road, v.point, v.criterion.title, v.status)
+                for o in self.outcomes
+                for v in o.verdicts
+            ),
+        )
 
     def warnings(self) -> tuple[str, ...]:
         """Return every doubt once, with the speeds and roads that it is about if not all."""

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 from trundle._progress import Progress
 from trundle.response import behind_isolators, reduce_rougher
-from trundle.results.pieces import Piece, runs_piece
+from trundle.results.parts import ChangesPart, runs_part
 from trundle.run.costs import Size, runs_seconds
 from trundle.run.jobs import Job, LaidOut
 from trundle.signals import Isolation
 from trundle.simulate import runs_with_mean
 
-__all__ = ["ChangesTask", "behind"]
+__all__ = ["ChangesTask"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -43,41 +43,26 @@ class ChangesTask:
         """Return about how long it takes."""
         return runs_seconds(self.job, self.job.parts[self.number], size)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> ChangesPart:
         """Run the roads on the first class, and scale the others from them, for each change."""
         job = self.job
         runs, mean = runs_with_mean(
             laid_out.layout, runs=job.parts[self.number], seed=job.seed, progress=progress
         )
-        found = [
-            runs_piece(
-                behind_isolators(runs, isolations),
-                reduce_rougher(
+        return ChangesPart(
+            variants=tuple(
+                runs_part(
                     behind_isolators(runs, isolations),
-                    behind_isolators(mean, isolations),
-                    list(job.factors.values()),
-                    averaging=job.averaging,
-                    quantities=job.quantities,
-                ),
-                [],
-                truncation=None,
+                    reduce_rougher(
+                        behind_isolators(runs, isolations),
+                        behind_isolators(mean, isolations),
+                        list(job.factors.values()),
+                        averaging=job.averaging,
+                        quantities=job.quantities,
+                    ),
+                    [],
+                    truncation=None,
+                )
+                for isolations in self.variants
             )
-            for isolations in self.variants
-        ]
-        arrays = {
-            f"{_prefix(k)}{name}": values
-            for k, piece in enumerate(found)
-            for name, values in piece.arrays.items()
-        }
-        return Piece(role="changes", arrays=arrays, notes=found[0].notes)
-
-
-def behind(piece: Piece, variant: int) -> Piece:
-    """Return what the runs of a `ChangesTask` leave for one of its changes."""
-    start = _prefix(variant)
-    own = {n.removeprefix(start): v for n, v in piece.arrays.items() if n.startswith(start)}
-    return Piece(role="runs", arrays=own, notes=piece.notes)
-
-
-def _prefix(variant: int) -> str:
-    return f"change{variant}."
+        )

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from jaxtyping import Float
 
+from trundle._html import html_table
 from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.criteria import (
@@ -93,6 +94,23 @@ class RecordResult:
     averaging: Averaging
     high_pass: float
     simulated: tuple[Simulated, ...] = ()
+
+    def __repr__(self) -> str:
+        """Say in a line what is said of the record."""
+        names = ", ".join(self.runs.point_names)
+        said = "; ".join(map(str, self.verdicts)) or "held against nothing"
+        return f"<RecordResult of {self.record.source!r}, {names}: {said}>"
+
+    def _repr_html_(self) -> str:
+        """Show the verdicts as a table."""
+        return html_table(
+            self.record.source,
+            ("channel", "axis", "criterion", "verdict", "margin"),
+            (
+                (v.point, v.axis, v.criterion.title, v.status, f"{v.margin:.3g}")
+                for v in self.verdicts
+            ),
+        )
 
     @property
     def warnings(self) -> tuple[FitnessWarning, ...]:

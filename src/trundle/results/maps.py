@@ -1,4 +1,4 @@
-"""Hold the maps of a study's cases, and read them from what their parts leave."""
+"""Hold the maps of a study's cases."""
 
 from __future__ import annotations
 
@@ -8,16 +8,8 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.criteria import ClassMap
-from trundle.results.pieces import Piece
-from trundle.study.map_plan import MapPlan
 
-__all__ = ["BY_CRITERION", "LEVELS", "MapKey", "StudyMap", "map_of"]
-
-BY_CRITERION = ("margin", "governing_band", "share_exceeding")
-"""Arrays of a map that have a row for each criterion."""
-
-LEVELS = ("rms_velocity", "peak_acceleration", "band_levels")
-"""Levels of a map that a share of runs stays below."""
+__all__ = ["MapKey", "StudyMap"]
 
 
 @dataclass(frozen=True)
@@ -49,19 +41,3 @@ class StudyMap:
     rms_velocity: Float[Array, " places"]
     peak_acceleration: Float[Array, " places"]
     band_levels: Float[Array, "places bands"]
-
-
-def map_of(plan: MapPlan, piece: Piece, road: int) -> StudyMap:
-    """Return the map of one of the roads of a piece."""
-    arrays = piece.arrays
-    some = tuple(c for c in plan.criteria if c.axis != "horizontal")
-    return StudyMap(
-        classes=ClassMap(
-            places=plan.places,
-            criteria=some,
-            complete=tuple(bool(flag) for flag in arrays[f"{road}.complete"]),
-            percentile=plan.percentile,
-            **{name: arrays[f"{road}.{name}"] for name in BY_CRITERION},
-        ),
-        **{name: arrays[f"{road}.{name}"] for name in LEVELS},
-    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import platform
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,38 +10,21 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trundle import __version__
 from trundle._csv import write_csv
 from trundle._json import plain
 from trundle.response import percentile_interval
 from trundle.results.cells import Cell
 from trundle.results.datasets import result_groups
+from trundle.results.folder import keep_result
 from trundle.results.results_folder import uninterrupted
 from trundle.results.study_result import StudyResult, positions_at
 
-__all__ = ["provenance", "summary_rows", "write_results"]
-
-
-def provenance(result: StudyResult) -> dict[str, Any]:
-    """Return all that is needed to run the study again and get the same bits."""
-    study = result.study
-    return {
-        "program": "trundle",
-        "version": __version__,
-        "study": study.title,
-        "study_hash": study.content_hash,
-        "floor_hash": study.floor.content_hash,
-        "seed": study.seed,
-        "runs": study.runs,
-        "python": platform.python_version(),
-        "numpy": np.__version__,
-        "methods": {method.name: str(method.interaction) for method in study.methods},
-    }
+__all__ = ["summary_rows", "write_results"]
 
 
 def write_results(result: StudyResult, folder: Path) -> None:
-    """Write `results.zarr`, `summary.json`, `summary.csv` and the study file into a folder."""
-    (folder / "study.toml").write_text(result.study.text, encoding="utf-8")
+    """Write `results.zarr`, `summary.json`, `summary.csv`, and what `read_result` reads back."""
+    keep_result(result, folder)
     with uninterrupted():
         _write_zarr(result, folder / "results.zarr")
     rows, verdicts = list(summary_rows(result)), list(_verdict_rows(result))
@@ -50,7 +32,7 @@ def write_results(result: StudyResult, folder: Path) -> None:
     if verdicts:
         _write_rows(folder / "verdicts.csv", [_flat(row) for row in verdicts])
     summary = {
-        "provenance": provenance(result),
+        "provenance": dict(result.provenance),
         "cells": rows,
         "verdicts": verdicts,
         "warnings": {
@@ -152,7 +134,7 @@ def _verdict_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
 
 
 def _write_zarr(result: StudyResult, path: Path) -> None:
-    attributes = {**plain(provenance(result)), "study_text": result.study.text}
+    attributes = {**plain(dict(result.provenance)), "study_text": result.study.text}
     attributes["methods"] = json.dumps(attributes["methods"])
     groups = result_groups(result)
     groups["/"] = groups["/"].assign_attrs(attributes)

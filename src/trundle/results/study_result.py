@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trundle._html import html_table
 from trundle.criteria import Verdict
-from trundle.dynamics import Modes
 from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, few_runs_warnings, level_warnings, size_warnings
 from trundle.results.cells import Cell, CellKey
 from trundle.results.maps import MapKey, StudyMap
+from trundle.results.modes import FirstModes
 from trundle.simulate import Crossing
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
 from trundle.study.doubts import study_doubts
 from trundle.study.model import Study
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 __all__ = ["StudyResult", "positions_at", "wheels_at"]
 
@@ -36,15 +41,48 @@ class StudyResult:
     maps : mapping of MapKey to StudyMap
         Maps by the assessed method, where the study asks for them: at the study's speeds and at
         those that its map names.
-    modes : Modes or None
+    modes : FirstModes or None
         Natural modes of the floor, where a method used them.
+    provenance : mapping of str
+        Where the result comes from: versions, hashes, seed.
     """
 
     study: Study
     cells: Mapping[CellKey, Cell]
     verdicts: Mapping[CellKey, tuple[Verdict, ...]]
     maps: Mapping[MapKey, StudyMap]
-    modes: Modes | None
+    modes: FirstModes | None
+    provenance: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """Say in a line what came out."""
+        verdicts = [v for found in self.verdicts.values() for v in found]
+        told = {s: sum(v.status == s for v in verdicts) for s in ("pass", "fail", "not assessed")}
+        said = ", ".join(f"{n} {status}" for status, n in told.items()) if verdicts else "none"
+        return (
+            f"<StudyResult of {self.study.title!r}: {len(self.cells)} cells, {len(self.maps)} "
+            f"maps; verdicts: {said}>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Show the verdicts as a table."""
+        return html_table(
+            self.study.title,
+            ("vehicle on", "road", "point", "criterion", "verdict", "margin"),
+            (
+                (key.case, key.road, v.point, v.criterion.title, v.status, f"{v.margin:.3g}")
+                for key, found in self.verdicts.items()
+                for v in found
+            ),
+        )
+
+    def to_xarray(self) -> xr.DataTree:
+        """Return everything as labelled arrays with units, as ``results.zarr`` holds it."""
+        import xarray as xr  # noqa: PLC0415 - slow to import
+
+        from trundle.results.datasets import result_groups  # noqa: PLC0415 - it arranges this
+
+        return xr.DataTree.from_dict(result_groups(self))
 
     def warnings(self) -> dict[str, tuple[FitnessWarning, ...]]:
         """Return the doubts of each method, each once."""

@@ -22,17 +22,17 @@ import scipy
 from trundle import __version__
 from trundle.dynamics import available_backends
 from trundle.errors import ComputationError, InputError
+from trundle.results.codec import keep_value, kept_value
 from trundle.results.disk import named_disk_errors, true_path
-from trundle.results.pieces import Piece
+from trundle.results.kept import refuse_links
+from trundle.results.parts import Part
 from trundle.run.fingerprint import digest_of
-from trundle.run.kept import read_kept, refuse_links, write_kept
 from trundle.study.model import Study
 
 __all__ = ["InMemory", "OnDisk", "PieceStore", "unfinished_folder", "unfinished_of"]
 
 _MARK = "trundle-unfinished.json"
-_NOTES = "notes as JSON"
-_FORMAT = 6  # of the pieces; another one starts anew
+_FORMAT = 7  # of the pieces; another one starts anew
 
 
 @runtime_checkable
@@ -43,11 +43,11 @@ class PieceStore(Protocol):
         """Return whether a piece is there."""
         ...
 
-    def save(self, name: str, piece: Piece) -> None:
+    def save(self, name: str, piece: Part) -> None:
         """Keep a piece."""
         ...
 
-    def load(self, name: str) -> Piece:
+    def load(self, name: str) -> Part:
         """Return a piece that is there."""
         ...
 
@@ -56,17 +56,17 @@ class InMemory:
     """Keep pieces for as long as this process lives."""
 
     def __init__(self) -> None:
-        self._pieces: dict[str, Piece] = {}
+        self._pieces: dict[str, Part] = {}
 
     def has(self, name: str) -> bool:
         """Return whether a piece is there."""
         return name in self._pieces
 
-    def save(self, name: str, piece: Piece) -> None:
+    def save(self, name: str, piece: Part) -> None:
         """Keep a piece."""
         self._pieces[name] = piece
 
-    def load(self, name: str) -> Piece:
+    def load(self, name: str) -> Part:
         """Return a piece that is there."""
         return self._pieces[name]
 
@@ -97,15 +97,13 @@ class OnDisk:
         """Return whether a piece is there."""
         return name in self._sound
 
-    def save(self, name: str, piece: Piece) -> None:
+    def save(self, name: str, piece: Part) -> None:
         """Write a piece aside, then rename it into place."""
-        said = {"role": piece.role, "notes": piece.notes}
-        notes = np.frombuffer(json.dumps(said).encode(), dtype=np.uint8)
         with named_disk_errors(self._file(name), "pieces finished before are kept"):
-            write_kept(self._file(name), {**piece.arrays, _NOTES: notes}, self._label(name))
+            keep_value(self._file(name), piece, self._label(name))
         self._sound.add(name)
 
-    def load(self, name: str) -> Piece:
+    def load(self, name: str) -> Part:
         """Return a piece that is there."""
         piece = self._read(self._file(name))
         if piece is None:
@@ -124,16 +122,9 @@ class OnDisk:
         """Return what a piece is: neither another study's nor another piece of this one."""
         return f"{name} {self._fingerprint}"
 
-    def _read(self, file: Path) -> Piece | None:
+    def _read(self, file: Path) -> Part | None:
         """Return the piece in a file; None if it is not what was written."""
-        arrays = read_kept(file, self._label(file.stem))
-        if arrays is None or _NOTES not in arrays:
-            return None
-        try:
-            said = json.loads(arrays.pop(_NOTES).tobytes())
-            return Piece(role=said["role"], arrays=arrays, notes=dict(said["notes"]))
-        except (ValueError, TypeError, KeyError, RecursionError):
-            return None
+        return kept_value(file, self._label(file.stem))
 
     def _files(self) -> list[Path]:
         return sorted(self._store.glob("*.piece"))

@@ -17,7 +17,7 @@ from trundle import __version__
 from trundle._progress import Progress
 from trundle.dynamics import repeatable
 from trundle.errors import ComputationError, InputError
-from trundle.results.pieces import Piece
+from trundle.results.parts import Part
 from trundle.run.executor import Shared
 from trundle.run.jobs import LaidOut, lay_out_job
 from trundle.run.tasks import Task
@@ -59,7 +59,7 @@ class Cluster:
         )
         self._pending[future] = what
 
-    def finished(self, *, wait: bool) -> Iterator[tuple[str, Piece]]:
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Part]]:
         """Give finished pieces: those there already, or all, as they come."""
         distributed = _distributed()
         while self._pending:
@@ -87,7 +87,7 @@ class Cluster:
                 "command goes on from there"
             )
 
-    def _piece(self, future: Any, what: _Sent) -> Piece | None:  # noqa: ANN401
+    def _piece(self, future: Any, what: _Sent) -> Part | None:  # noqa: ANN401
         """Return a task's piece; if what it needs died with a worker, send the task again."""
         distributed = _distributed()
         name = what.task.name
@@ -125,7 +125,7 @@ class _Sent:
 _kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last floor it prepared
 
 
-def _compute(task: Task, shared: Shared, source: str) -> Piece:
+def _compute(task: Task, shared: Shared, source: str) -> Part:
     """Compute a task, in a worker; one that joined late may have another source."""
     if source != source_hash():
         raise ComputationError(

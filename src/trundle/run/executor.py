@@ -8,7 +8,7 @@ from typing import Protocol, TypeAlias, runtime_checkable
 
 from trundle._progress import Progress
 from trundle.dynamics import repeatable
-from trundle.results.pieces import Piece
+from trundle.results.parts import Part
 from trundle.run.checkpoint import PieceStore
 from trundle.run.jobs import Job, LaidOut
 from trundle.run.progress import Bar
@@ -34,7 +34,7 @@ class Executor(Protocol):
         """Take a task; wait as long as there is no room for it."""
         ...
 
-    def finished(self, *, wait: bool) -> Iterator[tuple[str, Piece]]:
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Part]]:
         """Give the names of finished tasks with what they leave: those at hand, or all."""
         ...
 

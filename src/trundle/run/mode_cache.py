@@ -13,7 +13,7 @@ import numpy as np
 
 from trundle._progress import Progress
 from trundle.dynamics import Modes, available_backends, count_modes_below, natural_modes
-from trundle.run.kept import stored_as_they_are
+from trundle.results.kept import stored_as_they_are
 from trundle.structure import Floor
 
 __all__ = ["cache_folder", "has_modes", "modes_of"]

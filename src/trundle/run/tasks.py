@@ -11,10 +11,10 @@ from typing import Protocol, runtime_checkable
 
 from trundle._progress import Progress
 from trundle.response import behind_isolators, exact_statistics, reduce_rougher
-from trundle.results.pieces import Piece, exact_piece, runs_piece
+from trundle.results.parts import Part, exact_part, runs_part
 from trundle.run.costs import Size, exact_seconds, map_seconds, runs_seconds
 from trundle.run.jobs import Job, LaidOut
-from trundle.run.map_part import map_piece
+from trundle.run.mapping import map_part
 from trundle.simulate import harmonics, runs_with_mean, truncation_change
 
 __all__ = ["ExactTask", "MapTask", "RunsTask", "Task", "tasks_of"]
@@ -38,7 +38,7 @@ class Task(Protocol):
         """Return about how long it takes on two cores, on a floor of some size [s]."""
         ...
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
         """Compute it: the same bits wherever and whenever."""
         ...
 
@@ -67,7 +67,7 @@ class RunsTask:
         """Return about how long it takes."""
         return runs_seconds(self.job, self.job.parts[self.number], size)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
         """Run the roads on the first class, and scale the others from them."""
         job, layout = self.job, laid_out.layout
         factors = list(job.factors.values())
@@ -83,7 +83,7 @@ class RunsTask:
         )
         one = runs.part(slice(0, 1))
         histories = [one.rougher(mean, factor) for factor in factors] if first else []
-        return runs_piece(runs, reduced, histories, truncation=change)
+        return runs_part(runs, reduced, histories, truncation=change)
 
 
 def _most(progress: Progress | None) -> Progress | None:
@@ -106,13 +106,13 @@ class ExactTask:
         """Return about how long it takes."""
         return exact_seconds(self.job, size)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
         """Answer every wave, and add up the squares."""
         job, layout = self.job, laid_out.layout
         answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
         answers = (behind_isolators(answer, job.isolations) for answer in answers)
         exact = exact_statistics(answers, f_max=layout.f_max)
-        return exact_piece(exact, list(job.factors.values()))
+        return exact_part(exact, list(job.factors.values()))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -131,13 +131,13 @@ class MapTask:
         del size
         return map_seconds(self.job)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Piece:
+    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
         """Carry the contact forces of all runs to every place."""
         job, plan, places = self.job, self.job.map, laid_out.places
         assert plan is not None  # else it is no task of the job
         assert places is not None  # laid out with the map
         factors = list(job.factors.values())
-        return map_piece(plan, laid_out.layout, places, factors, job.seed, progress=progress)
+        return map_part(plan, laid_out.layout, places, factors, job.seed, progress=progress)
 
 
 def tasks_of(job: Job) -> tuple[Task, ...]:

@@ -9,7 +9,7 @@ from types import TracebackType
 
 from trundle._progress import Progress
 from trundle._threads import n_threads
-from trundle.results.pieces import Piece
+from trundle.results.parts import Part
 from trundle.run.executor import Shared
 from trundle.run.jobs import LaidOut
 from trundle.run.tasks import Task
@@ -31,8 +31,8 @@ class Threads:
     def __init__(self) -> None:
         self._at_once = min(_AT_ONCE, n_threads())
         self._stop = threading.Event()
-        self._running: dict[Future[Piece], str] = {}
-        self._done: list[tuple[str, Future[Piece]]] = []
+        self._running: dict[Future[Part], str] = {}
+        self._done: list[tuple[str, Future[Part]]] = []
         self._pool = ThreadPoolExecutor(self._at_once)
 
     def __enter__(self) -> Threads:
@@ -61,7 +61,7 @@ class Threads:
         self._running[self._pool.submit(self._run, task, shared, progress)] = task.name
         self._collect(self._at_once if task.job.modal else 0)
 
-    def finished(self, *, wait: bool) -> Iterator[tuple[str, Piece]]:
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Part]]:
         """Give what is finished, or all as they come."""
         while True:
             yield from self._taken()
@@ -69,7 +69,7 @@ class Threads:
                 return
             self._collect(len(self._running) - 1)
 
-    def _taken(self) -> Iterator[tuple[str, Piece]]:
+    def _taken(self) -> Iterator[tuple[str, Part]]:
         """Give what is at hand; an error comes after all that went well."""
         taken, self._done = self._done, []
         for name, future in sorted(taken, key=lambda pair: pair[1].exception() is not None):
@@ -81,7 +81,7 @@ class Threads:
             for future in wait(self._running, return_when=FIRST_COMPLETED).done:
                 self._done.append((self._running.pop(future), future))
 
-    def _run(self, task: Task, laid_out: LaidOut, progress: Progress) -> Piece:
+    def _run(self, task: Task, laid_out: LaidOut, progress: Progress) -> Part:
         """Compute a task, in a thread."""
 
         def tell(share: float) -> None:

@@ -13,8 +13,10 @@ from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import InputError
 from trundle.results.cells import Cell, CellKey
-from trundle.results.maps import MapKey, StudyMap, map_of
-from trundle.results.pieces import cell_of
+from trundle.results.maps import MapKey, StudyMap
+from trundle.results.modes import first_modes
+from trundle.results.parts import MapPart, cell_of
+from trundle.results.provenance import provenance_of
 from trundle.results.study_result import StudyResult
 from trundle.run.checkpoint import InMemory, PieceStore
 from trundle.run.estimate import seconds_of_modes, size_of
@@ -91,14 +93,14 @@ def _result(
     found: dict[CellKey, Cell] = {}
     maps: dict[MapKey, StudyMap] = {}
     for job in jobs:
-        pieces = [store.load(task.name) for task in tasks_of(job)]
+        parts = [store.load(task.name) for task in tasks_of(job)]
+        mapped = [part for part in parts if isinstance(part, MapPart)]
         for i, (road, factor) in enumerate(job.factors.items()):
             key = CellKey(job.case.name, road, job.method.name)
             if job.speed is None:
-                found[key] = cell_of(key, i, factor, pieces)
-            if job.map is not None:
-                map_key = MapKey(job.case.name, road, job.speed)
-                maps[map_key] = map_of(job.map, pieces[-1], i)
+                found[key] = cell_of(key, i, factor, parts)
+            for part in mapped:
+                maps[MapKey(job.case.name, road, job.speed)] = part.maps[i]
     cells = {key: found[key] for key in _keys(study)}
     verdicts = {
         key: _assess(study, cell)
@@ -110,7 +112,8 @@ def _result(
         cells=cells,
         verdicts=verdicts,
         maps=_in_order(study, maps),
-        modes=modes,
+        modes=None if modes is None else first_modes(modes),
+        provenance=provenance_of(study),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,16 +68,6 @@ class Coverage:
                 "contact patch"
             )
         return tuple(found)
-
-    def as_notes(self) -> dict[str, float | None]:
-        """Return the numbers as JSON can hold them."""
-        numbers = {"excited_to": self.excited_to, "leaves": self.leaves, "ends": self.ends}
-        return {name: value if np.isfinite(value) else None for name, value in numbers.items()}
-
-    @classmethod
-    def from_notes(cls, notes: Mapping[str, float | None]) -> Coverage:
-        """Return what `as_notes` gave."""
-        return cls(**{name: value for name, value in notes.items() if value is not None})
 
 
 def coverage_of(crossings: Sequence[Crossing], ends: float) -> Coverage:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from trundle._html import html_table
 from trundle.criteria import Criterion
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import ConstantSpeed, Entry, Route
@@ -151,6 +152,8 @@ class Study:
     ----------
     title, source, text, content_hash : str
         Title, path, text and hash of the study file.
+    files : mapping of str to bytes
+        Content of the files that it names, by these names.
     seed, runs : int
         Seed of all roads, and runs a cell.
     duration : float or None
@@ -196,6 +199,7 @@ class Study:
     source: str
     text: str
     content_hash: str
+    files: Mapping[str, bytes]
     seed: int
     runs: int
     duration: float | None
@@ -218,6 +222,35 @@ class Study:
     numbering: Mapping[str, str]
     force_speeds: tuple[float, ...]
     sources: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        """Say in a line what is studied."""
+        return (
+            f"<Study {self.title!r}: {len(self.cases)} cases on {len(self.roads)} roads by "
+            f"{len(self.methods)} methods, {self.runs} runs each, {len(self.points)} points, "
+            f"{self.floor.n_dofs} degrees of freedom>"
+        )
+
+    def _repr_html_(self) -> str:
+        """Show what is studied as a table."""
+        return html_table(
+            self.title,
+            ("what", "which"),
+            (
+                ("cases", ", ".join(case.name for case in self.cases)),
+                ("roads", ", ".join(self.roads)),
+                ("methods", "; ".join(f"{m.name}: {m.interaction}" for m in self.methods)),
+                ("points", ", ".join(self.points)),
+                ("criteria", ", ".join(c.title for c in self.criteria)),
+                ("runs", self.runs),
+                ("floor", f"{self.floor.name}, {self.floor.n_dofs} degrees of freedom"),
+            ),
+        )
+
+    @property
+    def criteria(self) -> tuple[Criterion, ...]:
+        """What the response is held against; nothing without an assessment."""
+        return () if self.assessment is None else self.assessment.criteria
 
     def crossings(self, case: Case, road: str, method: MethodPlan) -> tuple[Crossing, ...]:
         """Return the crossings of one cell."""

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
+from trundle._kinds import kinds_checked
 from trundle.criteria import Criterion, find_criterion, shaped
-from trundle.errors import Problem, StudyError
+from trundle.errors import InputError, Problem, StudyError
 from trundle.road import RoughnessBand
 from trundle.route import ConstantSpeed, Route
 from trundle.signals import Isolation
@@ -28,24 +29,31 @@ from trundle.study_file.build_map import MapInput, map_plan_of
 from trundle.study_file.build_methods import methods_of
 from trundle.study_file.convert import floor_plan_of, isolation_of, road_label, road_of, vehicle_of
 from trundle.study_file.lines import line_of, lines_of
-from trundle.study_file.read import StudyFile, read_study
+from trundle.study_file.read import StudyFile, read_study, read_text
 from trundle.study_file.user_criteria import read_criteria
 from trundle.vehicle import Vehicle
 
-__all__ = ["load_study"]
+__all__ = ["load_study", "study_from_text"]
 
 T = TypeVar("T")
 
 _MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
 
 
-def load_study(path: Path | str) -> Study:
+@kinds_checked
+def load_study(
+    path: Path | str, *, source: str | None = None, files: Mapping[str, Path] | None = None
+) -> Study:
     """Read, check and build a study.
 
     Parameters
     ----------
     path : path-like
         A TOML study file.
+    source : str, optional
+        What the file is called in messages and reports; its path unless given.
+    files : mapping of str to Path, optional
+        Where files are that the study names, if not beside it.
 
     Returns
     -------
@@ -57,9 +65,45 @@ def load_study(path: Path | str) -> Study:
     StudyError
         With every mistake found: of single values, and of how they fit together.
     """
-    file, problems = read_study(Path(path))
-    builder = _Builder(file, problems)
-    study = builder.build()
+    path = Path(path)
+    file, problems = read_study(path)
+    file = file if source is None else replace(file, source=source)
+    return _built(file, problems, path.parent, files or {})
+
+
+@kinds_checked
+def study_from_text(text: str, *, source: str = "study", folder: Path | str = ".") -> Study:
+    """Check and build a study from the text of a study file.
+
+    Parameters
+    ----------
+    text : str
+        TOML, as in a study file.
+    source : str
+        What it is called in messages and reports.
+    folder : path-like
+        Where files are that it names.
+
+    Returns
+    -------
+    Study
+        Everything in SI, the floor meshed.
+
+    Raises
+    ------
+    StudyError
+        With every mistake found.
+    """
+    if not text.isascii() and any("\ud800" <= c <= "\udfff" for c in text):
+        raise InputError(f"{source}: holds half a character (a surrogate); write it as UTF-8")
+    file, problems = read_text(text, source)
+    return _built(file, problems, Path(folder), {})
+
+
+def _built(
+    file: StudyFile, problems: list[Problem], folder: Path, files: Mapping[str, Path]
+) -> Study:
+    study = _Builder(file, problems, folder, files).build()
     if problems or study is None:
         lines = lines_of(file.text)
         placed = [replace(p, line=line_of(p.place, lines)) for p in problems]
@@ -71,8 +115,12 @@ def load_study(path: Path | str) -> Study:
 class _Builder:
     """Collect problems while building, so that one mistake does not hide the next."""
 
-    def __init__(self, file: StudyFile, problems: list[Problem]) -> None:
+    def __init__(
+        self, file: StudyFile, problems: list[Problem], folder: Path, files: Mapping[str, Path]
+    ) -> None:
         self.file, self.problems = file, problems
+        self.folder, self.files = folder, files
+        self.read: dict[str, bytes] = {}
 
     def build(self) -> Study | None:
         file = self.file
@@ -115,6 +163,7 @@ class _Builder:
             source=file.source,
             text=file.text,
             content_hash=file.content_hash,
+            files=self.read,
             seed=general.seed,
             runs=general.runs,
             duration=general.duration,
@@ -228,10 +277,13 @@ class _Builder:
         section = self.file.tables.get("criteria")
         if section is None:
             return None
-        folder, own = Path(self.file.source).parent, list[Criterion]()
+        own: list[Criterion] = []
         for i, name in enumerate(section.files):
-            read = self._try(f"criteria.files[{i + 1}]", lambda n=name: read_criteria(folder / n))
+            path = self.files.get(name, self.folder / name)
+            read = self._try(f"criteria.files[{i + 1}]", lambda p=path: read_criteria(p))
             own += read or ()
+            if read:
+                self.read[name] = path.read_bytes()
         if self.problems and len(own) < len(section.files):
             return None  # a curve of a file that cannot be read is not a second mistake
         curves = [

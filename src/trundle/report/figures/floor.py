@@ -13,8 +13,8 @@ from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from trundle._typing import Array
-from trundle.dynamics import Modes
 from trundle.report.canvas import COLOURS, Drawing, new_figure
+from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.route import Route
 from trundle.structure import Floor, FloorPlan
@@ -201,7 +201,7 @@ def mesh_figure(floor: Floor) -> Figure:
     return figure
 
 
-def modes_figure(floor: Floor, modes: Modes, *, n_shown: int = 8) -> Figure:
+def modes_figure(floor: Floor, modes: FirstModes, *, n_shown: int = 8) -> Figure:
     """Draw the vertical motion of the slab in the first modes."""
     n_shown = min(n_shown, modes.n_modes)
     columns = min(4, n_shown)

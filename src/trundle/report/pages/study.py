@@ -13,7 +13,6 @@ from trundle.report.canvas import Drawing, class_colours
 from trundle.report.figures import floor, map, response, road, vehicle
 from trundle.report.html import Picture, embedded, template
 from trundle.report.interactive import plotly_script
-from trundle.results.store import provenance
 from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import self_weight_deflection
@@ -82,7 +81,7 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         matrix=matrix,
         verdict=headline(result),
         warnings=result.warnings(),
-        provenance=provenance(result),
+        provenance=result.provenance,
         frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],
         n_modes=0 if modes is None else modes.n_modes,
         moving_mass=study.floor.moving_mass() / 1e3,

@@ -7,18 +7,17 @@ from collections.abc import Sequence
 import numpy as np
 
 from trundle._progress import Progress
-from trundle._typing import Array
 from trundle.criteria import class_map
-from trundle.response import floor_map
-from trundle.results.maps import BY_CRITERION, LEVELS
-from trundle.results.pieces import Piece
+from trundle.response import FloorMap, floor_map
+from trundle.results.maps import StudyMap
+from trundle.results.parts import MapPart
 from trundle.simulate import Layout, PlaceResponses, contact_force_histories
 from trundle.study.map_plan import MapPlan
 
-__all__ = ["map_piece"]
+__all__ = ["map_part"]
 
 
-def map_piece(
+def map_part(
     plan: MapPlan,
     layout: Layout,
     places: PlaceResponses,
@@ -26,7 +25,7 @@ def map_piece(
     seed: int,
     *,
     progress: Progress | None = None,
-) -> Piece:
+) -> MapPart:
     """Map a case on every road, and keep what is drawn of it."""
     forces, mean = contact_force_histories(layout, runs=range(plan.runs), seed=seed)
     every = floor_map(  # all roads beside each other: the floor answers them alike
@@ -38,19 +37,29 @@ def map_piece(
         every_step=plan.every_step,
         progress=progress,
     )
-    arrays: dict[str, Array] = {}
-    for i in range(len(factors)):
-        found = every.part(slice(i * plan.runs, (i + 1) * plan.runs))
-        held = class_map(
+    return MapPart(
+        maps=tuple(
+            _of_road(every.part(slice(i * plan.runs, (i + 1) * plan.runs)), plan, layout)
+            for i in range(len(factors))
+        )
+    )
+
+
+def _of_road(found: FloorMap, plan: MapPlan, layout: Layout) -> StudyMap:
+    """Hold the map of one road against the criteria, and keep the levels that it is drawn by."""
+    rms, peak, bands = (
+        np.percentile(levels, plan.percentile, axis=0)
+        for levels in (found.rms_velocity, found.peak_acceleration, found.band_levels)
+    )
+    return StudyMap(
+        classes=class_map(
             found,
             plan.criteria,
             percentile=plan.percentile,
             f_max=layout.f_max,
             coverage=layout.coverage,
-        )
-        arrays |= {f"{i}.{name}": getattr(held, name) for name in BY_CRITERION}
-        arrays[f"{i}.complete"] = np.array(held.complete)
-        for name in LEVELS:
-            level = np.percentile(getattr(found, name), plan.percentile, axis=0)
-            arrays[f"{i}.{name}"] = level
-    return Piece(role="map", arrays=arrays, notes={})
+        ),
+        rms_velocity=rms,
+        peak_acceleration=peak,
+        band_levels=bands,
+    )

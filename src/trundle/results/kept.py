@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+import json
 import os
 import tempfile
 import zipfile
@@ -19,10 +20,11 @@ from trundle.errors import InputError
 
 __all__ = ["read_kept", "refuse_links", "stored_as_they_are", "write_kept"]
 
+_SAID = "said as JSON"
 _DIGEST = 32  # bytes of SHA-256 before the arrays
 
 
-def write_kept(file: Path, arrays: Mapping[str, Array], label: str) -> None:
+def write_kept(file: Path, arrays: Mapping[str, Array], label: str, said: Any = None) -> None:
     """Write arrays aside, have the disk hold them, and rename: whole or not at all.
 
     Parameters
@@ -33,9 +35,12 @@ def write_kept(file: Path, arrays: Mapping[str, Array], label: str) -> None:
         Numbers; their names may hold anything but a slash.
     label : str
         What they are; only who asks for the same is given them.
+    said : object
+        What goes with them, as JSON takes it.
     """
     packed = io.BytesIO()
     named: dict[str, Any] = {name: np.ascontiguousarray(v) for name, v in arrays.items()}
+    named[_SAID] = np.frombuffer(json.dumps(said).encode(), dtype=np.uint8)
     np.savez(packed, **named)
     data = packed.getvalue()
     number, aside = tempfile.mkstemp(dir=file.parent, prefix=".writing-")
@@ -52,8 +57,8 @@ def write_kept(file: Path, arrays: Mapping[str, Array], label: str) -> None:
         raise
 
 
-def read_kept(file: Path, label: str) -> dict[str, Array] | None:
-    """Return the arrays of a file; None if it is not there, or not what was written.
+def read_kept(file: Path, label: str) -> tuple[dict[str, Array], Any] | None:
+    """Return the arrays of a file and what goes with them; None if they are not what was written.
 
     Nothing in it is unpickled.
 
@@ -72,7 +77,8 @@ def read_kept(file: Path, label: str) -> dict[str, Array] | None:
         if not stored_as_they_are(io.BytesIO(data)):
             return None
         with np.load(io.BytesIO(data), allow_pickle=False) as arrays:
-            return {name: arrays[name] for name in arrays.files}
+            found = {name: arrays[name] for name in arrays.files}
+        return found, json.loads(found.pop(_SAID).tobytes())
     except Exception:  # readers raise whatever a stranger's archive leads them to
         return None
 

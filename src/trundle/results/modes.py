@@ -1,0 +1,40 @@
+"""Hold what results keep of a floor's natural modes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from jaxtyping import Float
+
+from trundle._typing import Array
+from trundle.dynamics import Modes
+
+__all__ = ["FirstModes", "first_modes"]
+
+_KEPT = 8  # shapes that are drawn
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FirstModes:
+    """Hold all natural frequencies below a limit, and the shapes of the first modes.
+
+    Attributes
+    ----------
+    frequencies : ndarray of float, shape (n_modes,)
+        Natural frequencies, rising [Hz].
+    shapes : ndarray of float, shape (n_dofs, n_kept)
+        Shapes of the first, normalised to unit modal mass.
+    """
+
+    frequencies: Float[Array, " modes"]
+    shapes: Float[Array, "dofs kept"]
+
+    @property
+    def n_modes(self) -> int:
+        """Number of modes."""
+        return len(self.frequencies)
+
+
+def first_modes(modes: Modes) -> FirstModes:
+    """Return what results keep of modes."""
+    return FirstModes(frequencies=modes.frequencies, shapes=modes.shapes[:, :_KEPT].copy())

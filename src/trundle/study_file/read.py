@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, cast
@@ -12,84 +10,23 @@ from typing import Any, cast
 from pydantic import TypeAdapter, ValidationError
 
 from trundle.errors import Problem, StudyError
-from trundle.study_file import schema
+from trundle.study_file.document import StudyFile
+from trundle.study_file.fields import Section
 from trundle.study_file.lines import parse
 from trundle.study_file.rules import rule_of
+from trundle.study_file.sections import KINDS
+from trundle.study_file.sections.general import GeneralSection
 from trundle.vehicle import RETIRED, VEHICLES
 
-__all__ = ["StudyFile", "read_study", "read_text"]
+__all__ = ["read_study", "read_text"]
 
 _LARGEST = 1_000_000  # bytes; a study is a page or two of text
-_TABLES: dict[str, Any] = {
-    "floor": schema.FloorSection,
-    "roughness": schema.RoughnessSection,
-    "criteria": schema.CriteriaSection,
-    "map": schema.MapSection,
-    "publication": schema.PublicationSection,
-}
-_NAMED_TABLES: dict[str, Any] = {"vehicle": schema.VehicleSection}
-_LISTS: dict[str, Any] = {
-    "road": schema.RoadSection,
-    "route": schema.RouteSection,
-    "traffic": schema.TrafficSection,
-    "point": schema.PointSection,
-    "method": schema.MethodSection,
-    "printed": schema.PrintedSection,
-    "printed_bound": schema.PrintedBoundSection,
-    "note": schema.NoteSection,
-}
-_REQUIRED = ("floor", "vehicle", "road", "route", "point", "method")
-_GENERAL = tuple(schema.GeneralSection.model_fields)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class StudyFile:
-    """Hold the sections of a study file that passed their own checks, still unrelated.
-
-    Attributes
-    ----------
-    source : str
-        Path of the file.
-    text : str
-        Its text, kept for provenance.
-    general : GeneralSection or None
-        The keys above the first table.
-    tables : dict of str to Section
-        ``floor``, ``roughness``, ``criteria``, ``map``, ``publication``.
-    vehicles : dict of str to Section
-        Vehicle sections by name.
-    lists : dict of str to list of (int, Section)
-        Sections of each list, with their place in it.
-    declared : dict of str to set of str
-        Names that the file gives, also those of sections with mistakes: a reference to one
-        of them is not a second mistake.
-    counts : dict of str to int
-        Number of sections in each list, sound or not.
-    """
-
-    source: str
-    text: str
-    general: schema.GeneralSection | None
-    tables: dict[str, Any] = field(default_factory=dict[str, Any])
-    vehicles: dict[str, Any] = field(default_factory=dict[str, Any])
-    lists: dict[str, list[tuple[int, Any]]] = field(
-        default_factory=dict[str, list[tuple[int, Any]]]
-    )
-    declared: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
-    counts: dict[str, int] = field(default_factory=dict[str, int])
-
-    def items(self, name: str) -> list[Any]:
-        """Return the sections of a list."""
-        return [section for _, section in self.lists.get(name, [])]
-
-    def has_bad(self, name: str) -> bool:
-        """Return True when a list holds a section with mistakes."""
-        return len(self.lists.get(name, [])) < self.counts.get(name, 0)
-
-    @property
-    def content_hash(self) -> str:
-        """Hash of the text."""
-        return hashlib.sha256(self.text.encode()).hexdigest()[:16]
+_TABLES = {kind.name: kind.schema for kind in KINDS if kind.form == "table"}
+_NAMED_TABLES = {kind.name: kind.schema for kind in KINDS if kind.form == "named"}
+_LISTS = {kind.name: kind.schema for kind in KINDS if kind.form == "list"}
+_HEADERS = {kind.name: kind.header for kind in KINDS}
+_REQUIRED = tuple(kind.name for kind in KINDS if kind.required)
+_GENERAL = tuple(GeneralSection.model_fields)
 
 
 def read_study(path: Path) -> tuple[StudyFile, list[Problem]]:
@@ -110,9 +47,7 @@ def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
     known = (*_GENERAL, *_TABLES, *_NAMED_TABLES, *_LISTS)
     problems += [_unknown_key(key, data[key], known, "") for key in data if key not in known]
     problems += [_missing(name) for name in _REQUIRED if name not in data]
-    general = _section(
-        schema.GeneralSection, {k: data[k] for k in _GENERAL if k in data}, "", problems
-    )
+    general = _section(GeneralSection, {k: data[k] for k in _GENERAL if k in data}, "", problems)
     tables = {
         name: section
         for name, kind in _TABLES.items()
@@ -310,12 +245,8 @@ def _unknown_key(key: str, value: Any, known: tuple[str, ...], place: str) -> Pr
 
 
 def _missing(name: str) -> Problem:
-    brackets = f"[[{name}]]" if name in _LISTS else f"[{name}]"
-    if name in _NAMED_TABLES:
-        brackets = f"[{name}.NAME]"
-    return Problem(
-        place=name, value="nothing", rule="a study needs at least one", remedy=f"add {brackets}"
-    )
+    rule, remedy = "a study needs at least one", f"add {_HEADERS[name]}"
+    return Problem(place=name, value="nothing", rule=rule, remedy=remedy)
 
 
 def _path(place: str, location: list[Any]) -> str:
@@ -370,7 +301,7 @@ def _fields_within(kind: Any, data: Mapping[str, Any], location: list[Any]) -> t
 
 def _sections_in(annotation: Any) -> list[Any]:
     """Return the sections that a field may hold, itself or in a list."""
-    if isinstance(annotation, type) and issubclass(annotation, schema.Section):
+    if isinstance(annotation, type) and issubclass(annotation, Section):
         return [annotation]
     return [s for inner in getattr(annotation, "__args__", ()) for s in _sections_in(inner)]
 

@@ -1,25 +1,38 @@
-"""Turn the section of a map into a plan of it, and check that it can be mapped."""
+"""Maps: what is mapped over the floor, by the method that carries the verdict."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import Field
 
 from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.route import StaticStart
-from trundle.structure import FloorPlan, mesh_lines
+from trundle.structure import (
+    FloorPlan,
+    mesh_lines,
+)
 from trundle.study.map_plan import MapPlan, map_places
 from trundle.study.model import Assessment, Drive, MethodPlan
-from trundle.study_file.read import StudyFile
-from trundle.study_file.schema import MapSection
+from trundle.study_file.draft import Draft
+from trundle.study_file.fields import (
+    Flag,
+    PositiveLength,
+    Section,
+    Speed,
+    Whole,
+)
+from trundle.study_file.kinds import SectionKind
 
-__all__ = ["MapInput", "map_plan_of"]
+__all__ = ["MAP", "build", "fields"]
 
+_MANY = 1_000_000
 _MAPPED = ("band_rms_velocity", "peak_acceleration")  # quantities that a map can be held against
 _RUNS = 200  # of a map, unless the study says otherwise
 _MOST_PLACES = 20_000
@@ -27,45 +40,27 @@ _MOST_BYTES = 4e9  # of levels, or of contact forces, held at once
 _LEVEL_BYTES = 100.0  # of all levels of one run at one place
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MapInput:
-    """Hold what a map is planned from; what is None was not sound.
+class MapSection(Section):
+    """What is mapped over the whole floor, by the method that carries the verdict."""
 
-    Attributes
-    ----------
-    file : StudyFile
-        The study file.
-    plan : FloorPlan or None
-        The floor.
-    mesh_size : float
-        Largest edge of an element [m].
-    assessment : Assessment or None
-        What the response is held against.
-    drives : mapping of str to Drive
-        Routes by name.
-    methods : mapping of str to MethodPlan
-        Methods by name.
-    band : RoughnessBand or None
-        Waves that roads contain.
-    band_follows_dt : bool
-        Whether the band ends where the time step can no longer follow.
-    """
-
-    file: StudyFile
-    plan: FloorPlan | None
-    mesh_size: float
-    assessment: Assessment | None
-    drives: Mapping[str, Drive]
-    methods: Mapping[str, MethodPlan]
-    band: RoughnessBand | None
-    band_follows_dt: bool
+    places: Literal["grid", "nodes"] = "grid"
+    spacing: PositiveLength | None = None
+    runs: Annotated[Whole, Field(ge=1, le=_MANY)] | None = None
+    criterion: str | None = None
+    traffic: Flag = False
+    speeds: Annotated[tuple[Speed, ...], Field(max_length=20)] = ()
+    every_step: Flag = False
+    peaks: Flag = False
 
 
-def map_plan_of(given: MapInput) -> tuple[MapPlan | None, list[Problem]]:
-    """Return the plan of a map, if there is to be one, and its mistakes."""
-    file, section = given.file, given.file.tables.get("map")
+MAP = SectionKind(name="map", schema=MapSection, form="table")
+
+
+def build(draft: Draft) -> tuple[Draft, list[Problem]]:
+    """Return the draft with the plan of its map."""
+    file, section = draft.file, draft.file.tables.get("map")
     if section is None or file.general is None:
-        return None, []
+        return draft, []
     if "criteria" not in file.tables:
         problem = Problem(
             place="map",
@@ -73,23 +68,28 @@ def map_plan_of(given: MapInput) -> tuple[MapPlan | None, list[Problem]]:
             rule="a map holds the floor against criteria",
             remedy="add [criteria] with method and curves",
         )
-        return None, [problem]
-    if given.plan is None or given.assessment is None or given.band is None:
-        return None, []
+        return draft, [problem]
+    if draft.plan is None or draft.assessment is None or draft.band is None:
+        return draft, []
     checked = _Checked(
         section=section,
-        plan=given.plan,
-        mesh_size=given.mesh_size,
-        assessment=given.assessment,
-        drives=given.drives,
-        method=given.methods.get(given.assessment.method),
-        band=given.band,
-        band_follows_dt=given.band_follows_dt,
+        plan=draft.plan,
+        mesh_size=draft.mesh_size,
+        assessment=draft.assessment,
+        drives=draft.drives,
+        method=draft.methods.get(draft.assessment.method),
+        band=draft.band,
+        band_follows_dt=draft.band_follows_dt,
         runs=min(section.runs or _RUNS, file.general.runs),
         n_roads=max(1, len(file.items("road"))),
     )
-    problems = list(_problems(checked))
-    return (None if problems else _plan(checked)), problems
+    found = list(_problems(checked))
+    return (draft if found else replace(draft, map=_plan(checked))), found
+
+
+def fields(draft: Draft) -> dict[str, Any]:
+    """Return what a study takes from the section."""
+    return {"map": draft.map}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

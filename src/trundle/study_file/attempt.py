@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from trundle.errors import InputError, Problem
 
-__all__ = ["attempt"]
+__all__ = ["attempt", "attempted"]
 
 T = TypeVar("T")
 
@@ -24,3 +24,11 @@ def attempt(place: str, make: Callable[[], T], remedy: str = "") -> T | Problem:
             rule=rule,
             remedy=remedy or "correct the value",
         )
+
+
+def attempted(
+    place: str, make: Callable[[], T], remedy: str = ""
+) -> tuple[T | None, list[Problem]]:
+    """Return what `make` gives, or nothing and the problem of that place."""
+    made = attempt(place, make, remedy)
+    return (None, [made]) if isinstance(made, Problem) else (made, [])

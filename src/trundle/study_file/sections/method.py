@@ -1,20 +1,82 @@
-"""Turn the sections that name methods into methods: interaction, integration, damping, entry."""
+"""Methods: interaction, integration, damping, contact and entry."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any, Literal
 
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.route import Hat, Hermite, entry_named
 from trundle.simulate import Coupled, Decoupled, Integration
-from trundle.study.model import MethodPlan
-from trundle.study_file._attempt import attempt
-from trundle.study_file.read import StudyFile
-from trundle.study_file.schema import MethodSection
+from trundle.simulate.step_limits import longest_step, step_problem
+from trundle.study.model import Drive, MethodPlan
+from trundle.study_file.attempt import attempt
+from trundle.study_file.document import StudyFile
+from trundle.study_file.draft import Draft, unique
+from trundle.study_file.fields import (
+    Frequency,
+    GroupName,
+    NonNegativeLength,
+    PositiveLength,
+    Rate,
+    Ratio,
+    Section,
+    Time,
+    Wavenumber,
+)
+from trundle.study_file.kinds import SectionKind
 
-__all__ = ["methods_of"]
+__all__ = ["METHOD", "build", "fields", "problems"]
+
+
+class DampingSection(Section):
+    """Damping of the floor: a ratio in every mode, or Rayleigh's two coefficients."""
+
+    ratio: Ratio | None = None
+    rayleigh_alpha: Rate | None = None
+    rayleigh_beta: Time | None = None
+
+
+class MethodSection(Section):
+    """How vehicle and floor are computed."""
+
+    name: GroupName
+    interaction: Literal["decoupled", "coupled"]
+    integration: Literal["modal", "newmark"] = "modal"
+    f_max: Frequency | None = None
+    precision: Literal["double", "single"] = "double"
+    dt: Time
+    n_max: Wavenumber | None = None
+    contact_patch: NonNegativeLength | None = None
+    damping: DampingSection
+    contact: Literal["smooth", "hat"] = "smooth"
+    entry: Literal["drive_in", "ramp", "static", "abrupt"] = "drive_in"
+    entry_length: PositiveLength | None = None
+
+
+METHOD = SectionKind(name="method", schema=MethodSection, form="list", required=True)
+
+
+def build(draft: Draft) -> tuple[Draft, list[Problem]]:
+    """Return the draft with its methods."""
+    methods, found = methods_of(draft.file, draft.mesh_size, draft.band)
+    return replace(draft, methods=methods), found
+
+
+def fields(draft: Draft) -> dict[str, Any]:
+    """Return what a study takes from the section."""
+    return {"methods": tuple(draft.methods.values())}
+
+
+def problems(draft: Draft) -> Iterator[Problem]:
+    """Give steps and entries that do not suit a record, a vehicle or a route."""
+    yield from _time_steps(draft.file, draft.methods)
+    yield from _entries(draft.drives, draft.methods)
+    yield from _vehicle_steps(draft.drives, draft.methods)
+    yield from unique("method", [s.name for s in draft.file.items("method")])
 
 
 def methods_of(
@@ -143,3 +205,60 @@ def _ratio_with_newmark(place: str) -> Problem:
         remedy='write { rayleigh_alpha = "0.8587 1/s", rayleigh_beta = "0.001 s" }, which is 3 % '
         'at 3.75 and 5.8 Hz, or integration = "modal"',
     )
+
+
+def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
+    for i, section in file.lists.get("method", []):
+        plan = methods.get(section.name)
+        if plan is None:
+            continue
+        integration = plan.interaction.integration
+        duration = None if file.general is None else file.general.duration
+        if duration is not None and integration.dt > duration / 10.0:
+            yield Problem(
+                place=f"method[{i + 1}].dt",
+                value=f"{1e3 * integration.dt:g} ms",
+                rule=f"a record of {duration:g} s needs at least 10 steps",
+                remedy="shorten dt; 5 ms shows bands up to 80 Hz",
+            )
+
+
+def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
+    for name, drive in drives.items():
+        for method in methods.values():
+            length = getattr(method.entry, "length", None)
+            if length is not None and length > 0.5 * drive.route.length:
+                yield Problem(
+                    place=f"method {method.name!r}.entry_length",
+                    value=f"{length:g} m",
+                    rule=f"entry and exit must both fit on route {name!r} of "
+                    f"{drive.route.length:g} m",
+                    remedy=f"use at most {0.5 * drive.route.length:g} m",
+                )
+            if method.entry.lead(drive.vehicle.length) > drive.route.length:
+                yield Problem(
+                    place=f"method {method.name!r}.entry",
+                    value="static",
+                    rule=f"the whole vehicle must stand on route {name!r}, "
+                    f"{drive.route.length:g} m long, at the start; it needs "
+                    f"{drive.vehicle.length:g} m",
+                    remedy='lengthen the route, or use entry = "drive_in"',
+                )
+
+
+def _vehicle_steps(
+    drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]
+) -> Iterator[Problem]:
+    """Give the vehicles whose own vibration is too fast for a method's steps."""
+    vehicles = {drive.vehicle.name: drive.vehicle for drive in drives.values()}
+    for method in methods.values():
+        integration = method.interaction.integration
+        for vehicle in vehicles.values() if isinstance(integration, Modal) else ():
+            if problem := step_problem(vehicle, integration.dt):
+                yield Problem(
+                    place=f"method {method.name!r}.dt",
+                    value=f"{1e3 * integration.dt:g} ms",
+                    rule=problem.partition(": shorten")[0],
+                    remedy=f"shorten dt to {1e3 * longest_step(vehicle):.2g} ms, or see whether a "
+                    "stiffness or a mass has the wrong unit",
+                )

@@ -1,0 +1,144 @@
+"""Hold a study while it is put together from the sections of its file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from trundle.errors import Problem
+from trundle.road import RoughnessBand
+from trundle.signals import Isolation
+from trundle.structure import FloorPlan
+from trundle.study.map_plan import MapPlan
+from trundle.study.model import Assessment, Drive, MethodPlan
+from trundle.study_file.document import StudyFile
+from trundle.vehicle import Vehicle
+
+__all__ = ["Draft", "covered", "is_off", "refer", "unique", "unknown"]
+
+_EDGE = 1e-6  # m
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Draft:
+    """Hold what is built so far; what is None, or missing, was not sound.
+
+    Attributes
+    ----------
+    file : StudyFile
+        The sections that are sound by themselves.
+    folder : Path
+        Where files are that it names.
+    files : mapping of str to Path
+        Where they are, if not there.
+    plan : FloorPlan or None
+        Plan of the floor.
+    mesh_size : float
+        Largest edge of an element [m].
+    vehicles : mapping of str to Vehicle
+        By name.
+    drives : mapping of str to Drive
+        Routes by name.
+    band : RoughnessBand or None
+        Waves that roads contain.
+    band_follows_dt : bool
+        Whether the band ends where the time step can no longer follow.
+    methods : mapping of str to MethodPlan
+        By name.
+    assessment : Assessment or None
+        What the response is held against.
+    read : mapping of str to bytes
+        Content of the files that were read.
+    isolations : mapping of str to Isolation
+        By point.
+    map : MapPlan or None
+        What is mapped.
+    """
+
+    file: StudyFile
+    folder: Path
+    files: Mapping[str, Path]
+    plan: FloorPlan | None = None
+    mesh_size: float = 1.0
+    vehicles: Mapping[str, Vehicle] = field(default_factory=dict[str, Vehicle])
+    drives: Mapping[str, Drive] = field(default_factory=dict[str, Drive])
+    band: RoughnessBand | None = None
+    band_follows_dt: bool = True
+    methods: Mapping[str, MethodPlan] = field(default_factory=dict[str, MethodPlan])
+    assessment: Assessment | None = None
+    read: Mapping[str, bytes] = field(default_factory=dict[str, bytes])
+    isolations: Mapping[str, Isolation] = field(default_factory=dict[str, Isolation])
+    map: MapPlan | None = None
+
+
+def unknown(place: str, value: str, known: Iterable[str], what: str) -> Problem:
+    """Return the problem of a name that nothing in the study has."""
+    return Problem(
+        place=place,
+        value=repr(value),
+        rule=f"must be the name of a {what} in this study",
+        remedy=f"there are: {', '.join(known) or 'none'}",
+    )
+
+
+def refer(place: str, value: str, known: Collection[str], what: str) -> Iterator[Problem]:
+    """Give the problem of a name that nothing in the study has, if so.
+
+    Parameters
+    ----------
+    place : str
+        Where the name stands.
+    value : str
+        The name.
+    known : collection of str
+        Names that there are.
+    what : str
+        What it should be the name of.
+
+    Yields
+    ------
+    Problem
+        One, or nothing.
+    """
+    if value not in known:
+        yield unknown(place, value, sorted(known), what)
+
+
+def unique(place: str, names: Iterable[str]) -> Iterator[Problem]:
+    """Give the names that are there more than once.
+
+    Parameters
+    ----------
+    place : str
+        What is named.
+    names : iterable of str
+        All names.
+
+    Yields
+    ------
+    Problem
+        One for each name.
+    """
+    for name, times in Counter(names).items():
+        if times > 1:
+            yield Problem(
+                place=place,
+                value=f"{name!r} {times} times",
+                rule="names must differ, for results are found by them",
+                remedy="rename or remove one",
+            )
+
+
+def is_off(plan: FloorPlan, place: tuple[float, float]) -> bool:
+    """Return whether a place is off the floor [m]."""
+    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    x, y = place
+    return not (x0 - _EDGE <= x <= x1 + _EDGE and y0 - _EDGE <= y <= y1 + _EDGE)
+
+
+def covered(plan: FloorPlan) -> str:
+    """Say where the floor is."""
+    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    return f"the floor covers x {x0:g} to {x1:g} m and y {y0:g} to {y1:g} m"

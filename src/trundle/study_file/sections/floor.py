@@ -1,0 +1,218 @@
+"""The floor: the reference unit, or a rectangular storey of bays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Annotated, Any, Literal, TypeAlias
+
+import numpy as np
+from pydantic import Field
+
+from trundle.errors import Problem
+from trundle.structure import (
+    FloorPlan,
+    Material,
+    Rectangle,
+    ShellSection,
+    build_floor,
+    reference_plan,
+)
+from trundle.study_file.attempt import attempted
+from trundle.study_file.draft import Draft
+from trundle.study_file.fields import (
+    AreaDensity,
+    Density,
+    Flag,
+    Length,
+    NonNegativeLength,
+    Number,
+    PositiveLength,
+    Pressure,
+    Section,
+    Whole,
+)
+from trundle.study_file.kinds import SectionKind
+
+__all__ = ["FLOOR", "build", "fields", "problems"]
+
+EdgeKind: TypeAlias = Literal["free", "symmetry", "simple", "pinned", "clamped"]
+_MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
+
+
+class ReferenceFloorSection(Section):
+    """The reference unit at a mesh size."""
+
+    kind: Literal["reference_unit"]
+    mesh_size: PositiveLength = 1.0
+
+
+class RectangleSection(Section):
+    """Width and depth of a beam or column."""
+
+    width: PositiveLength
+    depth: PositiveLength
+
+
+class MaterialSection(Section):
+    """An isotropic material."""
+
+    elastic_modulus: Pressure
+    poisson_ratio: Annotated[Number, Field(ge=0.0, lt=0.5)] = 0.2
+    density: Density
+
+
+class EdgesSection(Section):
+    """How each edge of the plan is held."""
+
+    x_min: EdgeKind = "free"
+    x_max: EdgeKind = "free"
+    y_min: EdgeKind = "free"
+    y_max: EdgeKind = "free"
+
+
+class PlanFloorSection(Section):
+    """A rectangular storey of bays."""
+
+    kind: Literal["plan"]
+    mesh_size: PositiveLength
+    x_lines: Annotated[tuple[Length, ...], Field(min_length=2)]
+    y_lines: Annotated[tuple[Length, ...], Field(min_length=2)]
+    x_extent: tuple[Length, Length] | None = None
+    y_extent: tuple[Length, Length] | None = None
+    slab_thickness: PositiveLength
+    superimposed_mass: AreaDensity = 0.0
+    material: MaterialSection
+    beams_x: RectangleSection | None = None
+    beams_y: RectangleSection | None = None
+    secondary_y: RectangleSection | None = None
+    secondary_per_bay: Annotated[Whole, Field(ge=1, le=50)] = 1
+    column: RectangleSection | None = None
+    storey_below: NonNegativeLength = 0.0
+    storey_above: NonNegativeLength = 0.0
+    eccentric_beams: Flag = True
+    edges: EdgesSection = EdgesSection()
+
+
+FloorSection: TypeAlias = Annotated[
+    ReferenceFloorSection | PlanFloorSection, Field(discriminator="kind")
+]
+
+
+FLOOR = SectionKind(name="floor", schema=FloorSection, form="table", required=True)
+
+
+def build(draft: Draft) -> tuple[Draft, list[Problem]]:
+    """Return the draft with the plan of the floor."""
+    section = draft.file.tables.get("floor")
+    if section is None:
+        return draft, []
+    plan, found = attempted(
+        "floor",
+        reference_plan
+        if isinstance(section, ReferenceFloorSection)
+        else lambda: floor_plan_of(section),
+    )
+    if plan is not None:
+        found += _mesh_problems(plan, section.mesh_size)
+    return replace(draft, plan=plan, mesh_size=float(section.mesh_size)), found
+
+
+def fields(draft: Draft) -> dict[str, Any]:
+    """Return what a study takes from the section; the floor is meshed."""
+    plan = draft.plan
+    assert plan is not None  # a study is made of sound sections alone
+    floor = build_floor(plan, mesh_size=draft.mesh_size)
+    return {"floor": floor, "plan": plan, "mesh_size": draft.mesh_size}
+
+
+def problems(draft: Draft) -> Iterator[Problem]:
+    """Give floors that nothing holds."""
+    if draft.plan is not None:
+        yield from _supports(draft.plan)
+
+
+def _mesh_problems(plan: FloorPlan, size: float) -> list[Problem]:
+    sides = [high - low for low, high in (plan.x_extent, plan.y_extent)]
+    nodes = np.prod([side / size + 1 for side in sides])
+    if nodes > _MAX_NODES:
+        smallest = float(np.sqrt(np.prod(sides) / _MAX_NODES))
+        return [
+            Problem(
+                place="floor.mesh_size",
+                value=f"{size:g} m",
+                rule=f"the mesh may have {_MAX_NODES} nodes; this one would have {nodes:.3g}",
+                remedy=f"use {np.ceil(100 * smallest) / 100:g} m or more",
+            )
+        ]
+    if size > 0.25 * min(sides):
+        return [
+            Problem(
+                place="floor.mesh_size",
+                value=f"{size:g} m",
+                rule="an element may be at most a quarter of the floor's shorter side",
+                remedy=f"use {0.25 * min(sides):g} m or less; 1 m suits most floors",
+            )
+        ]
+    return []
+
+
+def floor_plan_of(section: PlanFloorSection) -> FloorPlan:
+    """Return the plan of a storey."""
+    material = Material(**dict(section.material))
+    x, y = np.array(section.x_lines), np.array(section.y_lines)
+
+    def size(rectangle: Any) -> Rectangle | None:
+        """Return a rectangle, if one is given."""
+        return None if rectangle is None else Rectangle(**dict(rectangle))
+
+    return FloorPlan(
+        name="plan",
+        x_lines=x,
+        y_lines=y,
+        x_extent=section.x_extent or (float(x[0]), float(x[-1])),
+        y_extent=section.y_extent or (float(y[0]), float(y[-1])),
+        slab=ShellSection(
+            thickness=section.slab_thickness,
+            material=material,
+            superimposed_mass=section.superimposed_mass,
+        ),
+        material=material,
+        beams_x=size(section.beams_x),
+        beams_y=size(section.beams_y),
+        secondary_y=size(section.secondary_y),
+        secondary_per_bay=section.secondary_per_bay,
+        column=size(section.column),
+        storey_below=section.storey_below,
+        storey_above=section.storey_above,
+        edges=dict(section.edges),
+        eccentric_beams=section.eccentric_beams,
+    )
+
+
+def _supports(plan: FloorPlan) -> Iterator[Problem]:
+    storeys = plan.storey_below > 0.0 or plan.storey_above > 0.0
+    if (plan.column is not None) != storeys:
+        yield Problem(
+            place="floor.column" if plan.column else "floor.storey_below",
+            value="columns without a storey" if plan.column else "a storey without columns",
+            rule="columns need storey_below or storey_above, and storeys need a column",
+            remedy="give both, or neither",
+        )
+    elif plan.column is None and not _stands(plan.edges):
+        yield Problem(
+            place="floor.edges",
+            value=", ".join(f"{e} {kind}" for e, kind in plan.edges.items() if kind != "free")
+            or "no columns, and no simple, pinned or clamped edge",
+            rule="nothing holds this floor: it would sink, or tip over about a lone edge",
+            remedy="add column and storey_below, or hold another edge: simple, pinned or clamped",
+        )
+
+
+def _stands(edges: Mapping[str, str]) -> bool:
+    """Return whether edges alone hold a floor up, and against tipping."""
+    bearing = [edge for edge, kind in edges.items() if kind in ("simple", "pinned")]
+    level = {edge[0] for edge, kind in edges.items() if kind == "symmetry"}
+    if "clamped" in edges.values() or len(bearing) > 1:
+        return True
+    return bool(bearing) and bearing[0][0] in level

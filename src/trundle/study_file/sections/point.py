@@ -1,0 +1,92 @@
+"""Points: where the response is read, on the floor or behind an isolator."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field
+
+from trundle.errors import InputError, Problem
+from trundle.signals import Isolation, Isolator, TransmissibilityTable
+from trundle.study_file.attempt import attempted
+from trundle.study_file.draft import Draft, covered, is_off, unique
+from trundle.study_file.fields import (
+    Factor,
+    Frequency,
+    Name,
+    Place,
+    Ratio,
+    Section,
+)
+from trundle.study_file.kinds import SectionKind
+
+__all__ = ["POINT", "build", "fields", "problems"]
+
+
+class IsolatorSection(Section):
+    """What stands between floor and tool: a mass on a spring and a damper, or a table."""
+
+    frequency: Frequency | None = None
+    damping: Ratio | None = None
+    table: Annotated[tuple[tuple[Frequency, Factor], ...], Field(min_length=2)] | None = None
+
+
+class PointSection(Section):
+    """A place where the response is read, on the floor or behind an isolator there."""
+
+    name: Name
+    at: Place
+    isolator: IsolatorSection | None = None
+
+
+POINT = SectionKind(name="point", schema=PointSection, form="list", required=True)
+
+
+def build(draft: Draft) -> tuple[Draft, list[Problem]]:
+    """Return the draft with the isolators at its points."""
+    isolations: dict[str, Isolation] = {}
+    found: list[Problem] = []
+    for i, section in draft.file.lists.get("point", []):
+        if section.isolator is not None:
+            isolation, mistakes = attempted(
+                f"point[{i + 1}].isolator", lambda s=section.isolator: isolation_of(s)
+            )
+            found += mistakes
+            if isolation is not None:
+                isolations[section.name] = isolation
+    return replace(draft, isolations=isolations), found
+
+
+def fields(draft: Draft) -> dict[str, Any]:
+    """Return what a study takes from the section."""
+    return {
+        "points": {p.name: p.at for p in draft.file.items("point")},
+        "isolations": draft.isolations,
+    }
+
+
+def problems(draft: Draft) -> Iterator[Problem]:
+    """Give points off the floor, and points of one name."""
+    plan = draft.plan
+    for i, section in draft.file.lists.get("point", []):
+        if plan is not None and is_off(plan, section.at):
+            yield Problem(
+                place=f"point[{i + 1}].at",
+                value=f"({section.at[0]:g}, {section.at[1]:g}) m",
+                rule=f"a point must lie on the floor; {covered(plan)}",
+                remedy="move it onto the floor",
+            )
+    yield from unique("point", [s.name for s in draft.file.items("point")])
+
+
+def isolation_of(section: IsolatorSection) -> Isolation:
+    """Return what stands between floor and tool."""
+    if section.table is not None and section.frequency is None and section.damping is None:
+        f, ratios = np.array(section.table).T
+        return TransmissibilityTable(frequencies=f, ratios=ratios)
+    if section.table is None and section.frequency is not None and section.damping is not None:
+        return Isolator(frequency=section.frequency, damping_ratio=section.damping)
+    raise InputError("an isolator is either a frequency and a damping, or a table")

@@ -1,0 +1,98 @@
+"""What a publication says: values to hold beside ours, numbers of figures, notes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from trundle.errors import Problem
+from trundle.study.model import Note, Printed, PrintedBound
+from trundle.study_file.draft import Draft, refer
+from trundle.study_file.fields import (
+    Acceleration,
+    Line,
+    Name,
+    Section,
+    Speed,
+)
+from trundle.study_file.kinds import SectionKind
+from trundle.study_file.sections.road import road_label
+
+__all__ = ["NOTE", "PRINTED", "PRINTED_BOUND", "PUBLICATION", "fields", "problems"]
+
+
+class PrintedSection(Section):
+    """A published pair of values to hold beside ours."""
+
+    case: Name
+    road: str
+    method: Name
+    peak_acceleration: Acceleration
+    rms_velocity: Speed
+
+
+class PrintedBoundSection(Section):
+    """A published upper bound to hold beside ours."""
+
+    bound: Literal["single", "absolute maximum", "multiple vehicles"]
+    road: str
+    method: Name
+    peak_acceleration: Acceleration
+    rms_velocity: Speed
+
+
+class PublicationSection(Section):
+    """What a publication says of this study: numbers of its figures and tables, its sources."""
+
+    numbers: dict[Name, Line] = Field(default_factory=dict[Name, Line])
+    force_speeds: Annotated[tuple[Speed, ...], Field(max_length=10)] = ()
+    sources: tuple[Line, ...] = ()
+
+
+class NoteSection(Section):
+    """A note that the report prints."""
+
+    title: Annotated[Line, Field(max_length=200)]
+    text: Annotated[str, Field(min_length=1, max_length=5000)]
+
+
+PRINTED = SectionKind(name="printed", schema=PrintedSection, form="list")
+PRINTED_BOUND = SectionKind(name="printed_bound", schema=PrintedBoundSection, form="list")
+PUBLICATION = SectionKind(name="publication", schema=PublicationSection, form="table")
+NOTE = SectionKind(name="note", schema=NoteSection, form="list")
+
+
+def fields(draft: Draft) -> dict[str, Any]:
+    """Return what a study takes from the sections."""
+    file = draft.file
+    publication = file.tables.get("publication") or PublicationSection()
+    return {
+        "printed": tuple(Printed(**dict(p)) for p in file.items("printed")),
+        "printed_bounds": tuple(PrintedBound(**dict(p)) for p in file.items("printed_bound")),
+        "notes": tuple(Note(**dict(n)) for n in file.items("note")),
+        "numbering": publication.numbers,
+        "force_speeds": publication.force_speeds,
+        "sources": publication.sources,
+    }
+
+
+def problems(draft: Draft) -> Iterator[Problem]:
+    """Give values of a case, a road or a method that is not there."""
+    file = draft.file
+    names = {
+        "case": file.declared["route"] | file.declared["traffic"],
+        "road": {road_label(s) for s in file.items("road")},
+        "method": file.declared["method"],
+    }
+    for kind, keys in {
+        "printed": ("case", "road", "method"),
+        "printed_bound": ("road", "method"),
+    }.items():
+        for i, section in file.lists.get(kind, []):
+            for key in keys:
+                if key == "road" and file.has_bad("road"):
+                    continue  # a road with mistakes has no label to compare with
+                place = f"{kind}[{i + 1}].{key}"
+                yield from refer(place, getattr(section, key), names[key], key)

@@ -19,8 +19,8 @@ from trundle.structure import (
     ShellSection,
     SpringGroup,
 )
-from trundle.structure.beam import beam_mass, beam_stiffness
-from trundle.structure.shell import shell_mass, shell_stiffness
+from trundle.structure.elements.beam import beam_mass, beam_stiffness
+from trundle.structure.elements.quad_shell import shell_mass, shell_stiffness
 
 STEEL = Material(elastic_modulus=210e9, poisson_ratio=0.3, density=7850.0)
 SLAB = ShellSection(thickness=0.2, material=CONCRETE)

@@ -3,15 +3,8 @@
 from trundle.structure.arches import arching
 from trundle.structure.bridge import beam_bridge
 from trundle.structure.edges import EDGES, Edge
-from trundle.structure.floor import (
-    DOF_NAMES,
-    BeamGroup,
-    Floor,
-    MirrorPlane,
-    PointMasses,
-    ShellGroup,
-    SpringGroup,
-)
+from trundle.structure.elements import BeamGroup, Elements, PointMasses, ShellGroup, SpringGroup
+from trundle.structure.floor import DOF_NAMES, Floor, MirrorPlane
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.reference import reference_plan, reference_unit
 from trundle.structure.resolution import (
@@ -30,6 +23,7 @@ __all__ = [
     "BeamGroup",
     "BeamSection",
     "Edge",
+    "Elements",
     "Floor",
     "FloorPlan",
     "Material",

@@ -7,7 +7,8 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from trundle._checks import count, one_of, positive
-from trundle.structure.floor import BeamGroup, Floor
+from trundle.structure.elements import BeamGroup
+from trundle.structure.floor import Floor
 from trundle.structure.sections import BeamSection, Material
 
 __all__ = ["BeamEnds", "beam_bridge"]

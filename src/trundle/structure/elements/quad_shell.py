@@ -14,15 +14,18 @@ T. J. R. Hughes and F. Brezzi, Comput. Meth. Appl. Mech. Eng. 72 (1989) 105-121 
 
 from __future__ import annotations
 
-import numpy as np
-from jaxtyping import Float
+from dataclasses import dataclass
 
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.frames import rotate_blocks, shell_frames
 from trundle.structure.sections import ShellSection
 
-__all__ = ["shell_mass", "shell_stiffness"]
+__all__ = ["ShellGroup", "shell_mass", "shell_stiffness"]
 
 _XI = np.array([-1.0, 1.0, 1.0, -1.0])
 _ETA = np.array([-1.0, -1.0, 1.0, 1.0])
@@ -239,3 +242,52 @@ def _add_drilling_hourglass(stiffness: Array, local: Array, section: ShellSectio
     share = 1e-3 * section.material.shear_modulus * section.thickness
     block = np.einsum("e,pa,pb->eab", 4.0 * det * share, patterns, patterns)
     _add_to(stiffness, _RZ, block)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ShellGroup:
+    """Hold flat shells of one section.
+
+    Attributes
+    ----------
+    elements : ndarray of int, shape (n_elements, 4)
+        Node numbers, in order round each element.
+    section : ShellSection
+        Thickness, material and superimposed mass.
+    name : str
+        What the group is: ``slab`` ...
+    """
+
+    elements: Int[Array, "elements 4"]
+    section: ShellSection
+    name: str = "slab"
+
+    def __post_init__(self) -> None:
+        """Freeze the connectivity."""
+        elements = frozen_array("elements", self.elements, shape=(None, 4), dtype=np.intp)
+        set_frozen(self, elements=elements)
+
+    @property
+    def connectivity(self) -> Int[Array, "elements 4"]:
+        """Node numbers of each element."""
+        return self.elements
+
+    @property
+    def stands_on_ground(self) -> bool:
+        """Whether an end may be rigid ground."""
+        return False
+
+    @property
+    def carried(self) -> Bool[Array, " 6"]:
+        """All six: membrane, bending and drilling."""
+        return np.ones(6, dtype=bool)
+
+    def stiffness_blocks(
+        self, xyz: Float[Array, "elements 4 3"]
+    ) -> Float[Array, "elements dofs dofs"]:
+        """Return the stiffness of each element, see `shell_stiffness`."""
+        return shell_stiffness(xyz, self.section)
+
+    def mass_blocks(self, xyz: Float[Array, "elements 4 3"]) -> Float[Array, "elements dofs dofs"]:
+        """Return the mass of each element, see `shell_mass`."""
+        return shell_mass(xyz, self.section)

@@ -12,15 +12,19 @@ Z. Friedman and J. B. Kosmatka, Computers & Structures 47 (1993) 473-481.
 
 from __future__ import annotations
 
-import numpy as np
-from jaxtyping import Float
+from dataclasses import dataclass, field
 
+import numpy as np
+from jaxtyping import Bool, Float, Int
+
+from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array
 from trundle.structure.frames import beam_frames, rotate_blocks
 from trundle.structure.sections import BeamSection
 
-__all__ = ["beam_mass", "beam_stiffness"]
+__all__ = ["BeamGroup", "beam_mass", "beam_stiffness"]
 
+_UP = (0.0, 0.0, 1.0)
 _GAUSS_4 = np.polynomial.legendre.leggauss(4)
 # Bending in the local x-z plane uses w and ry = -dw/dx; in the x-y plane v and rz = dv/dx.
 _PLANE_XZ, _SIGN_XZ = np.array([2, 4, 8, 10]), np.array([1.0, -1.0, 1.0, -1.0])
@@ -165,3 +169,62 @@ def _with_offset(matrices: Array, offset: Array) -> Array:
     link[2, 3], link[2, 4] = ey, -ex
     transform = np.kron(np.eye(2), link)
     return transform.T @ matrices @ transform
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BeamGroup:
+    """Hold straight members of one section, offset and orientation.
+
+    Attributes
+    ----------
+    elements : ndarray of int, shape (n_elements, 2)
+        Node numbers of the two ends.
+    section : BeamSection
+        Cross-section about its own centroid.
+    offset : ndarray of float, shape (3,)
+        From node to centroid in global axes [m].
+    up : ndarray of float, shape (3,)
+        Direction of the section's depth; members parallel to it use global x instead.
+    name : str
+        What the group is: ``beam``, ``column`` ...
+    """
+
+    elements: Int[Array, "elements 2"]
+    section: BeamSection
+    offset: Float[Array, " 3"] = field(default_factory=lambda: np.zeros(3))
+    up: Float[Array, " 3"] = field(default_factory=lambda: np.array(_UP))
+    name: str = "beam"
+
+    def __post_init__(self) -> None:
+        """Freeze connectivity and vectors."""
+        set_frozen(
+            self,
+            elements=frozen_array("elements", self.elements, shape=(None, 2), dtype=np.intp),
+            offset=frozen_array("offset", self.offset, shape=(3,)),
+            up=frozen_array("up", self.up, shape=(3,)),
+        )
+
+    @property
+    def connectivity(self) -> Int[Array, "elements 2"]:
+        """Node numbers of each element."""
+        return self.elements
+
+    @property
+    def stands_on_ground(self) -> bool:
+        """Whether an end may be rigid ground."""
+        return False
+
+    @property
+    def carried(self) -> Bool[Array, " 6"]:
+        """All six: stretch, bending, shear and torsion."""
+        return np.ones(6, dtype=bool)
+
+    def stiffness_blocks(
+        self, xyz: Float[Array, "elements 2 3"]
+    ) -> Float[Array, "elements dofs dofs"]:
+        """Return the stiffness of each element, see `beam_stiffness`."""
+        return beam_stiffness(xyz, self.section, offset=self.offset, up=self.up)
+
+    def mass_blocks(self, xyz: Float[Array, "elements 2 3"]) -> Float[Array, "elements dofs dofs"]:
+        """Return the mass of each element, see `beam_mass`."""
+        return beam_mass(xyz, self.section, offset=self.offset, up=self.up)

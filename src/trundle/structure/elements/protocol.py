@@ -1,0 +1,54 @@
+"""Say what a floor asks of its elements."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+from jaxtyping import Bool, Float, Int
+
+from trundle._typing import Array
+
+__all__ = ["GROUND", "Elements"]
+
+GROUND = -1
+"""Node number that stands for rigid ground."""
+
+
+@runtime_checkable
+class Elements(Protocol):
+    """Elements of one kind: their nodes, the dofs that they carry, and their matrices.
+
+    Blocks are in the order of the nodes, six dofs a node (`DOF_NAMES`), in global axes.
+    """
+
+    @property
+    def name(self) -> str:
+        """What the group is: ``slab``, ``column`` ..."""
+        ...
+
+    @property
+    def connectivity(self) -> Int[Array, "elements nodes"]:
+        """Node numbers of each element; `GROUND` for rigid ground."""
+        ...
+
+    @property
+    def stands_on_ground(self) -> bool:
+        """Whether `GROUND` may be among them."""
+        ...
+
+    @property
+    def carried(self) -> Bool[Array, " 6"]:
+        """True for dofs of its nodes to which it gives a stiffness or a mass."""
+        ...
+
+    def stiffness_blocks(
+        self, xyz: Float[Array, "elements nodes 3"]
+    ) -> Float[Array, "elements dofs dofs"] | None:
+        """Return the stiffness of each element [N/m], or None; `xyz` are its nodes [m]."""
+        ...
+
+    def mass_blocks(
+        self, xyz: Float[Array, "elements nodes 3"]
+    ) -> Float[Array, "elements dofs dofs"] | None:
+        """Return the consistent mass of each element [kg], or None; `xyz` are its nodes [m]."""
+        ...

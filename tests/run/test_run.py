@@ -83,7 +83,7 @@ def folder(result, tmp_path_factory):
 def test_the_folder_holds_what_is_promised(folder):
     names = {entry.name for entry in folder.iterdir()}
     assert names == {
-        ".trundle-results", "figures", "report.html", "results.zarr", "study.toml", "summary.csv",
+        ".trundle-results", "figures", "kept", "report.html", "results.zarr", "study.toml", "summary.csv",
         "summary.json", "verdicts.csv",
     }  # fmt: skip
     figures = {entry.name for entry in (folder / "figures").iterdir()}

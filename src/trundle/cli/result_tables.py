@@ -8,7 +8,7 @@ from trundle.cli.screen import print_table
 from trundle.criteria import Verdict
 from trundle.results.study_result import StudyResult
 from trundle.views.printed import bound_rows, comparison_rows
-from trundle.views.tables import exact_rows, summary_rows
+from trundle.views.tables import exact_rows, summary_headings, summary_rows
 from trundle.views.verdicts import verdict_matrix
 from trundle.views.words import road_words, written
 
@@ -114,9 +114,9 @@ def _print_comparison(result: StudyResult) -> None:
 def _print_summary(result: StudyResult) -> None:
     print_table(
         f"Median (5-95 %) of {result.study.runs} runs",
-        ("vehicle on", "class", "method", "point", "peak a [gal]", "record RMS v [um/s]"),
+        ("vehicle on", "class", "method", "point", *summary_headings()),
         (
-            (row.case, row.road, row.method, row.point, _spread(row.peak), _spread(row.rms))
+            (row.case, row.road, row.method, row.point, *map(_spread, row.ranges))
             for row in summary_rows(result)
         ),
         text_columns=4,

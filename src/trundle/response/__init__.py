@@ -6,6 +6,7 @@ from trundle.response.isolated import behind_isolators
 from trundle.response.level_doubts import few_runs_warnings, level_warnings
 from trundle.response.measured import reduce_record
 from trundle.response.peaks import LargestValues
+from trundle.response.quantities import QUANTITIES, Quantity, tabled
 from trundle.response.reduction import (
     Reduced,
     join,
@@ -23,10 +24,12 @@ from trundle.response.spectra import (
 from trundle.response.statistics import ExactStatistics, exact_statistics
 
 __all__ = [
+    "QUANTITIES",
     "BandSpectra",
     "ExactStatistics",
     "FloorMap",
     "LargestValues",
+    "Quantity",
     "Reduced",
     "SpectrumQuantity",
     "UpperBounds",
@@ -43,6 +46,7 @@ __all__ = [
     "reduce_runs",
     "size_warnings",
     "spectra_of",
+    "tabled",
     "upper_bounds",
     "velocity_spectra",
 ]

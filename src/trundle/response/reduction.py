@@ -12,13 +12,12 @@ from scipy import stats
 from trundle._checks import within
 from trundle._kinds import kinds_checked
 from trundle._typing import Array, ArrayLike
+from trundle.response.quantities import QUANTITIES, Histories
 from trundle.response.spectra import BandSpectra, SpectrumQuantity, spectra_of
 from trundle.signals import (
     BASE_ACCELERATION,
     BASE_SIDEWAYS,
     Averaging,
-    mtvv,
-    vibration_dose_value,
     weight,
 )
 from trundle.simulate import MeanResponse, Runs
@@ -34,34 +33,52 @@ class Reduced:
 
     Attributes
     ----------
-    peak_acceleration, peak_time : ndarray of float, shape (n_runs, n_points)
-        Largest absolute acceleration [m/s2], and when it was [s].
-    rms_velocity : ndarray of float, shape (n_runs, n_points)
-        RMS velocity over the record [m/s].
+    numbers : mapping of str to ndarray, shape (n_runs, n_points) or (n_runs, n_contacts)
+        Single numbers, one array for each of `QUANTITIES`.
     spectra : BandSpectra
         One-third-octave velocity levels [m/s].
     more : mapping of str to BandSpectra
         Other spectra that were asked for, by their quantity.
-    response_factor : ndarray of float, shape (n_runs, n_points)
-        Largest 1 s RMS of acceleration weighted by Wb, over 0.005 m/s2; of sideways motion by Wd,
-        over 0.00357 m/s2.
-    vdv : ndarray of float, shape (n_runs, n_points)
-        Vibration dose value of one event, weighted alike [m/s^1.75].
-    peak_contact_force : ndarray of float, shape (n_runs, n_contacts)
-        Largest contact force, static load included [N].
-    tension : ndarray of bool, shape (n_runs, n_contacts)
-        Whether a contact would have had to pull: it would have left the floor.
     """
 
-    peak_acceleration: Float[Array, "runs points"]
-    peak_time: Float[Array, "runs points"]
-    rms_velocity: Float[Array, "runs points"]
+    numbers: Mapping[str, Array]
     spectra: BandSpectra
     more: Mapping[SpectrumQuantity, BandSpectra]
-    response_factor: Float[Array, "runs points"]
-    vdv: Float[Array, "runs points"]
-    peak_contact_force: Float[Array, "runs contacts"]
-    tension: Bool[Array, "runs contacts"]
+
+    @property
+    def peak_acceleration(self) -> Float[Array, "runs points"]:
+        """Largest absolute acceleration [m/s2]."""
+        return self.numbers["peak_acceleration"]
+
+    @property
+    def peak_time(self) -> Float[Array, "runs points"]:
+        """When it was [s]."""
+        return self.numbers["peak_time"]
+
+    @property
+    def rms_velocity(self) -> Float[Array, "runs points"]:
+        """RMS velocity over the record [m/s]."""
+        return self.numbers["rms_velocity"]
+
+    @property
+    def response_factor(self) -> Float[Array, "runs points"]:
+        """Largest 1 s RMS of weighted acceleration over 0.005 m/s2; 0.00357 m/s2 sideways."""
+        return self.numbers["response_factor"]
+
+    @property
+    def vdv(self) -> Float[Array, "runs points"]:
+        """Vibration dose value of one event, weighted alike [m/s^1.75]."""
+        return self.numbers["vdv"]
+
+    @property
+    def peak_contact_force(self) -> Float[Array, "runs contacts"]:
+        """Largest contact force, static load included [N]."""
+        return self.numbers["peak_contact_force"]
+
+    @property
+    def tension(self) -> Bool[Array, "runs contacts"]:
+        """Whether a contact would have had to pull: it would have left the floor."""
+        return self.numbers["tension"]
 
 
 @kinds_checked
@@ -89,7 +106,6 @@ def reduce_runs(
         Points that move sideways: weighted by Wd, and held against its base.
     """
     fs, seen = runs.sampling_frequency, record or slice(None)
-    size, time = np.abs(runs.acceleration[:, seen]), runs.time[seen]
     moved, sideways = np.moveaxis(runs.acceleration, 1, -1), list(horizontal)
     felt = weight(moved, fs, "Wb")
     if sideways:
@@ -99,16 +115,19 @@ def reduce_runs(
     base[sideways] = BASE_SIDEWAYS
     wanted: dict[SpectrumQuantity, None] = dict.fromkeys(quantities)
     wanted.pop("band_rms_velocity", None)
+    histories = Histories(
+        time=runs.time[seen],
+        sampling_frequency=fs,
+        acceleration=runs.acceleration[:, seen],
+        velocity=runs.velocity[:, seen],
+        felt=felt,
+        base=base,
+        contact_forces=runs.contact_forces,
+    )
     return Reduced(
-        peak_acceleration=size.max(axis=1),
-        peak_time=time[size.argmax(axis=1)],
-        rms_velocity=np.sqrt(np.mean(runs.velocity[:, seen] ** 2, axis=1)),
+        numbers={quantity.name: quantity.measure(histories) for quantity in QUANTITIES},
         spectra=spectra_of(runs, "band_rms_velocity", averaging=averaging, record=record),
         more={name: spectra_of(runs, name, averaging=averaging, record=record) for name in wanted},
-        response_factor=mtvv(felt, fs) / base,
-        vdv=vibration_dose_value(felt, fs),
-        peak_contact_force=runs.contact_forces.max(axis=1),
-        tension=np.any(runs.contact_forces < 0.0, axis=1),
     )
 
 
@@ -153,15 +172,11 @@ def join(parts: Sequence[Reduced]) -> Reduced:
     """Put the runs of several parts behind each other."""
     first = parts[0]
     return Reduced(
-        peak_acceleration=_stack(parts, "peak_acceleration"),
-        peak_time=_stack(parts, "peak_time"),
-        rms_velocity=_stack(parts, "rms_velocity"),
+        numbers={
+            name: np.concatenate([part.numbers[name] for part in parts]) for name in first.numbers
+        },
         spectra=_join_spectra([part.spectra for part in parts]),
         more={name: _join_spectra([part.more[name] for part in parts]) for name in first.more},
-        response_factor=_stack(parts, "response_factor"),
-        vdv=_stack(parts, "vdv"),
-        peak_contact_force=_stack(parts, "peak_contact_force"),
-        tension=_stack(parts, "tension"),
     )
 
 
@@ -171,10 +186,6 @@ def _join_spectra(parts: Sequence[BandSpectra]) -> BandSpectra:
         values=np.concatenate([part.values for part in parts]),
         times=np.concatenate([part.times for part in parts]),
     )
-
-
-def _stack(parts: Sequence[Reduced], name: str) -> Array:
-    return np.concatenate([getattr(part, name) for part in parts])
 
 
 def percentile_interval(

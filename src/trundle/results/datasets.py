@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 import numpy as np
 import xarray as xr
 
-from trundle.response import ExactStatistics
+from trundle.response import QUANTITIES, ExactStatistics
 from trundle.results.cells import Cell, CellKey
 from trundle.results.map_datasets import map_groups
 from trundle.results.study_result import StudyResult
@@ -73,12 +73,13 @@ def _summary_dataset(result: StudyResult) -> xr.Dataset:
 
     return xr.Dataset(
         {
-            "peak_acceleration": variable(
-                cell, lambda c: c.peak_acceleration, "m/s2", "largest absolute acceleration"
-            ),
-            "rms_velocity": variable(
-                cell, lambda c: c.rms_velocity, "m/s", "RMS velocity over the record"
-            ),
+            **{
+                q.name: variable(
+                    cell, lambda c, name=q.name: c.reduced.numbers[name], q.units, q.long_name
+                )
+                for q in QUANTITIES
+                if q.stored and q.per == "point"
+            },
             "band_velocity": variable(
                 (*cell, "band"),
                 lambda c: c.spectra.values,
@@ -154,14 +155,17 @@ def _contact_dataset(result: StudyResult, case: str) -> xr.Dataset:
     def cell(road: str, method: str) -> Cell:
         return result.cells[CellKey(case, road, method)]
 
-    peaks = np.stack([np.stack([cell(r, m).peak_contact_force for m in methods]) for r in roads])
     return xr.Dataset(
         {
-            "peak_contact_force": (
+            q.name: (
                 ("road", _METHOD, "run", "contact"),
-                peaks,
-                {"units": "N", "long_name": "largest contact force, static load included"},
+                np.stack(
+                    [np.stack([cell(r, m).reduced.numbers[q.name] for m in methods]) for r in roads]
+                ),
+                {"units": q.units, "long_name": q.long_name},
             )
+            for q in QUANTITIES
+            if q.stored and q.per == "contact"
         },
         coords={
             "road": roads,

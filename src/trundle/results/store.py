@@ -12,7 +12,7 @@ import xarray as xr
 
 from trundle._csv import write_csv
 from trundle._json import plain
-from trundle.response import percentile_interval
+from trundle.response import percentile_interval, tabled
 from trundle.results.cells import Cell
 from trundle.results.datasets import result_groups
 from trundle.results.folder import keep_result
@@ -68,10 +68,9 @@ def summary_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
                 "point": point,
                 "runs": len(cell.peak_acceleration),
             }
-            for name, unit, values in (
-                ("peak_acceleration", "m_s2", cell.peak_acceleration[:, i]),
-                ("rms_velocity", "m_s", cell.rms_velocity[:, i]),
-            ):
+            for quantity in tabled():
+                name, values = quantity.name, cell.reduced.numbers[quantity.name][:, i]
+                unit = quantity.units.replace("/", "_")
                 for share in (5, 50, 95):
                     row[f"{name}_p{share:02d}_{unit}"] = float(np.percentile(values, share))
                 low, high = percentile_interval(values, 95.0)

@@ -9,6 +9,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Str
 from pydantic_core import PydanticCustomError
 
 from trundle.errors import InputError
+from trundle.response import QUANTITIES
 from trundle.units import DIMENSIONS, to_si
 
 __all__ = [
@@ -120,9 +121,9 @@ def _check_name(value: str) -> str:
 
 
 # Coordinates of the results: a group below them cannot have such a name.
-_TAKEN = {
-    "band", "case", "contact", "method_name", "peak_contact_force", "point", "road", "run",
-}  # fmt: skip
+_TAKEN = {"band", "case", "contact", "method_name", "point", "road", "run"} | {
+    quantity.name for quantity in QUANTITIES if quantity.per == "contact"
+}
 
 
 def _check_group_name(value: str) -> str:

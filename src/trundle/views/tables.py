@@ -7,17 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from trundle.dynamics import Modal
-from trundle.response import percentile_interval
+from trundle.response import percentile_interval, tabled
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
 from trundle.units import GAL, MICROMETRE_PER_SECOND
-from trundle.views.words import Range, spread, written
+from trundle.views.words import Range, shown, spread, written
 
 __all__ = [
     "ExactRow",
     "SummaryRow",
     "TruncationRow",
     "exact_rows",
+    "summary_headings",
     "summary_rows",
     "truncation_rows",
 ]
@@ -25,14 +26,13 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True)
 class SummaryRow:
-    """Hold one cell's ranges: peak acceleration [gal], record RMS velocity [um/s]."""
+    """Hold the ranges of one cell at a point, in the order of `summary_headings`."""
 
     case: str
     road: str
     method: str
     point: str
-    peak: Range
-    rms: Range
+    ranges: tuple[Range, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +95,11 @@ class TruncationRow:
     acceleration: float
 
 
+def summary_headings() -> list[str]:
+    """Return what the ranges of a `SummaryRow` are of, with the units that they are in."""
+    return [f"{quantity.heading} [{shown(quantity.units)[0]}]" for quantity in tabled()]
+
+
 def summary_rows(result: StudyResult) -> list[SummaryRow]:
     """Return one row a cell and point."""
     return [
@@ -103,8 +108,10 @@ def summary_rows(result: StudyResult) -> list[SummaryRow]:
             road=key.road,
             method=key.method,
             point=point,
-            peak=spread(cell.peak_acceleration[:, i], GAL),
-            rms=spread(cell.rms_velocity[:, i], MICROMETRE_PER_SECOND),
+            ranges=tuple(
+                spread(cell.reduced.numbers[quantity.name][:, i], shown(quantity.units)[1])
+                for quantity in tabled()
+            ),
         )
         for key, cell in result.cells.items()
         for i, point in enumerate(result.study.points)

@@ -8,6 +8,7 @@ from trundle.criteria import Verdict
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.signals import Averaging, nominal_frequency
 from trundle.study.model import Study
+from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 __all__ = [
     "Range",
@@ -17,6 +18,7 @@ __all__ = [
     "road_words",
     "roughest_words",
     "rule_name",
+    "shown",
     "spread",
     "written",
 ]
@@ -35,6 +37,12 @@ def written(value: float, digits: int = 3) -> str:
     """Write a number with so many digits as people do: 1320, not 1.32e+03."""
     short = float(f"{value:.{digits}g}")
     return f"{short:.0f}" if 10.0**digits <= abs(short) < 1e6 else f"{value:.{digits}g}"
+
+
+def shown(units: str) -> tuple[str, float]:
+    """Return the unit that engineers read a quantity in, and its size in SI."""
+    units_of_people = {"m/s2": ("gal", GAL), "m/s": ("um/s", MICROMETRE_PER_SECOND)}
+    return units_of_people.get(units, (units, 1.0))
 
 
 def between(verdict: Verdict) -> str:

@@ -19,7 +19,7 @@ from trundle.structure import self_weight_deflection
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 from trundle.views.map import map_payload
 from trundle.views.printed import bound_rows, comparison_rows
-from trundle.views.tables import exact_rows, summary_rows, truncation_rows
+from trundle.views.tables import exact_rows, summary_headings, summary_rows, truncation_rows
 from trundle.views.verdicts import headline, verdict_matrix
 from trundle.views.words import road_words
 
@@ -72,6 +72,7 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         comparison=comparison_rows(result),
         bounds=bound_rows(result),
         summary=summary_rows(result),
+        summary_headings=summary_headings(),
         exact=exact_rows(result),
         truncation=truncation_rows(result),
         map=_with_colours(map_payload(result)),

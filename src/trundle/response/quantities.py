@@ -1,0 +1,139 @@
+"""Say which single numbers are kept of every run: one row of a table each.
+
+What is kept of runs, the labelled arrays, ``summary.csv`` and the tables of screen and report loop
+over `QUANTITIES`; a further quantity is a further row here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._typing import Array
+from trundle.signals import mtvv, vibration_dose_value
+
+__all__ = ["QUANTITIES", "Histories", "Quantity", "tabled"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Histories:
+    """Hold what quantities are measured on: the steps of some runs that are looked at.
+
+    Attributes
+    ----------
+    time : ndarray of float, shape (n_steps,)
+        Time [s].
+    sampling_frequency : float
+        Steps a second [Hz].
+    acceleration, velocity : ndarray of float, shape (n_runs, n_steps, n_points)
+        Motion, up positive [m/s2], [m/s].
+    felt : ndarray of float, shape (n_runs, n_points, n_steps)
+        Acceleration weighted as people feel it: Wb upright, Wd sideways [m/s2].
+    base : ndarray of float, shape (n_points,)
+        Weighted acceleration whose response factor is 1 [m/s2].
+    contact_forces : ndarray of float, shape (n_runs, n_steps, n_contacts)
+        Forces on the floor, positive when pressing [N].
+    """
+
+    time: Float[Array, " steps"]
+    sampling_frequency: float
+    acceleration: Float[Array, "runs steps points"]
+    velocity: Float[Array, "runs steps points"]
+    felt: Float[Array, "runs points felt"]
+    base: Float[Array, " points"]
+    contact_forces: Float[Array, "runs all contacts"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Quantity:
+    """Hold one number that is kept of every run.
+
+    Attributes
+    ----------
+    name : str
+        Its name in arrays and tables.
+    units : str
+        Unit in SI; units for people follow from it.
+    long_name : str
+        What it is, for the arrays.
+    heading : str
+        What it is called above a column of a table; nothing if it stands in none.
+    per : {"point", "contact"}
+        What there is one of.
+    stored : bool
+        Whether it is among the labelled arrays.
+    measure : callable
+        Takes `Histories`; returns an array of shape (n_runs, n_points or n_contacts).
+    """
+
+    name: str
+    units: str
+    long_name: str
+    heading: str = ""
+    per: Literal["point", "contact"] = "point"
+    stored: bool = True
+    measure: Callable[[Histories], Array]
+
+
+QUANTITIES: tuple[Quantity, ...] = (
+    Quantity(
+        name="peak_acceleration",
+        units="m/s2",
+        long_name="largest absolute acceleration",
+        heading="peak acceleration",
+        measure=lambda h: np.abs(h.acceleration).max(axis=1),
+    ),
+    Quantity(
+        name="peak_time",
+        units="s",
+        long_name="time of the largest absolute acceleration",
+        stored=False,
+        measure=lambda h: h.time[np.abs(h.acceleration).argmax(axis=1)],
+    ),
+    Quantity(
+        name="rms_velocity",
+        units="m/s",
+        long_name="RMS velocity over the record",
+        heading="record RMS velocity",
+        measure=lambda h: np.sqrt(np.mean(h.velocity**2, axis=1)),
+    ),
+    Quantity(
+        name="response_factor",
+        units="1",
+        long_name="largest 1 s RMS of weighted acceleration over the base curve",
+        stored=False,
+        measure=lambda h: mtvv(h.felt, h.sampling_frequency) / h.base,
+    ),
+    Quantity(
+        name="vdv",
+        units="m/s1.75",
+        long_name="vibration dose value of one event",
+        stored=False,
+        measure=lambda h: vibration_dose_value(h.felt, h.sampling_frequency),
+    ),
+    Quantity(
+        name="peak_contact_force",
+        units="N",
+        long_name="largest contact force, static load included",
+        per="contact",
+        measure=lambda h: h.contact_forces.max(axis=1),
+    ),
+    Quantity(
+        name="tension",
+        units="1",
+        long_name="whether a contact would have had to pull: it would have left the floor",
+        per="contact",
+        stored=False,
+        measure=lambda h: np.any(h.contact_forces < 0.0, axis=1),
+    ),
+)
+"""All of them, in the order of tables."""
+
+
+def tabled() -> tuple[Quantity, ...]:
+    """Return the quantities that have columns in tables."""
+    return tuple(quantity for quantity in QUANTITIES if quantity.heading)

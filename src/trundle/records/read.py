@@ -9,13 +9,11 @@ import numpy as np
 
 from trundle.errors import FitnessWarning, InputError
 from trundle.records.channels import choose
-from trundle.records.formats import foreign, format_of
+from trundle.records.foreign import foreign
 from trundle.records.headings import usual_unit
-from trundle.records.miniseed import read_miniseed
 from trundle.records.raw import RawRecord
+from trundle.records.record_format import all_formats, format_of
 from trundle.records.table import read_table
-from trundle.records.uff import read_uff
-from trundle.records.wav import read_wav
 from trundle.signals import Axis, Record, RecordQuantity, axis_of, channel_fault
 from trundle.units import motion_scale, to_si
 
@@ -80,7 +78,7 @@ def read_record(path: Path, options: RecordOptions) -> Record:
     """
     data = _bytes_of(path)
     kind = format_of(data)
-    if kind != "wav" and options.full_scale:
+    if options.full_scale and not (kind and kind.full_scale):
         raise InputError(f"{path}: --full-scale is for WAV files; say --unit")
     if options.full_scale and options.unit:
         raise InputError(f"{path}: --full-scale says the unit too; leave --unit out")
@@ -107,7 +105,7 @@ def _bytes_of(path: Path) -> bytes:
         if size > _LARGEST:
             raise InputError(f"{path}: a record is at most 2 GB; cut it into events")
         with path.open("rb") as file:
-            if size > _LARGEST_TEXT and format_of(file.read(512)) == "text":
+            if size > _LARGEST_TEXT and format_of(file.read(512)) is None:
                 raise InputError(f"{path}: a text is at most 300 MB; cut it into events")
             file.seek(0)
             return file.read(_LARGEST + 1)
@@ -116,18 +114,13 @@ def _bytes_of(path: Path) -> bytes:
 
 
 def _raw(data: bytes, path: Path, options: RecordOptions, rate: float | None) -> RawRecord:
-    kind = format_of(data)
     if told := foreign(data):
         raise InputError(f"{path}: is {told}")
-    if kind == "wav":
-        return read_wav(data, path)
-    if kind == "miniseed":
-        return read_miniseed(data, path, wanted=options.channel)
-    if kind == "uff":
-        return read_uff(data, path)
-    named = {".wav": "WAV", ".uff": "UFF", ".unv": "UFF", ".mseed": "miniSEED", ".msd": "miniSEED"}
-    if (suffix := path.suffix.lower()) in named:
-        raise InputError(f"{path}: is no {named[suffix]} file, whatever its name says")
+    if (kind := format_of(data)) is not None:
+        return kind.read(data, path, options.channel)
+    suffix = path.suffix.lower()
+    if named := [one.name for one in all_formats() if suffix in one.suffixes]:
+        raise InputError(f"{path}: is no {named[0]} file, whatever its name says")
     return read_table(data, path, rate=rate)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 import warnings
 from pathlib import Path
@@ -11,10 +12,11 @@ import numpy as np
 
 from trundle.errors import InputError
 from trundle.records.raw import RawRecord
+from trundle.records.record_format import RecordFormat
 from trundle.records.stamps import even_rate, on_even_time
 from trundle.units import to_si
 
-__all__ = ["read_uff"]
+__all__ = ["FORMAT", "read_uff"]
 
 _ORDINATE = {11: "m/s", 12: "m/s2"}  # codes of what the samples are, of dataset 58
 _DIRECTIONS = {1: "x", 2: "y", 3: "z"}
@@ -151,3 +153,13 @@ def _unit(one: dict[str, Any], length: float) -> str:
         return label
     unit = _ORDINATE.get(_whole(one, "ordinate_spec_data_type"), "")
     return f"{1.0 / length:.12g} {unit}" if unit and length != 1.0 else unit
+
+
+_BEGINS = re.compile(rb"^\s*-1[ \t]*\r?\n\s*\d{2,4}b?[ \t\r\n]")
+
+FORMAT = RecordFormat(
+    name="UFF",
+    suffixes=(".uff", ".unv"),
+    claims=lambda data: _BEGINS.match(data[:400]) is not None,
+    read=lambda data, path, _wanted: read_uff(data, path),
+)

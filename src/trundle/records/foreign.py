@@ -1,16 +1,9 @@
-"""Tell a record's format by what is in it, whatever its name says."""
+"""Say what files of other programs are, and what to do with them."""
 
 from __future__ import annotations
 
-import re
-from typing import Literal, TypeAlias
+__all__ = ["foreign"]
 
-__all__ = ["Format", "foreign", "format_of"]
-
-Format: TypeAlias = Literal["wav", "uff", "miniseed", "text"]
-
-_MINISEED = re.compile(rb"^[0-9 \x00]{6}[DRQM][ \x00]")
-_UFF = re.compile(rb"^\s*-1[ \t]*\r?\n\s*\d{2,4}b?[ \t\r\n]")
 _FOREIGN: tuple[tuple[bytes, str], ...] = (
     (b"PK\x03\x04", "a spreadsheet or an archive: save the sheet as CSV, or unpack it"),
     (b"\x1f\x8b", "compressed by gzip: unpack it"),
@@ -30,17 +23,6 @@ _FOREIGN: tuple[tuple[bytes, str], ...] = (
     (b"ID3", "an MP3 recording, which has lost what no one hears: record WAV"),
     (b"%PDF", "a PDF: ask for the numbers"),
 )
-
-
-def format_of(data: bytes) -> Format:
-    """Return the format of a file's bytes."""
-    if data[:4] in {b"RIFF", b"RIFX", b"RF64"} and data[8:12] == b"WAVE":
-        return "wav"
-    if (data[:2] == b"MS" and data[2:3] == b"\x03") or _MINISEED.match(data[:8]):
-        return "miniseed"
-    if _UFF.match(data[:400]):
-        return "uff"
-    return "text"
 
 
 def foreign(data: bytes) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,9 @@ import numpy as np
 
 from trundle.errors import InputError
 from trundle.records.raw import RawRecord
+from trundle.records.record_format import RecordFormat
 
-__all__ = ["read_miniseed"]
+__all__ = ["FORMAT", "read_miniseed"]
 
 
 def read_miniseed(data: bytes, path: Path, *, wanted: str = "") -> RawRecord:
@@ -95,3 +97,15 @@ def _traces(data: bytes, path: Path) -> list[Any]:
 def _first_line(error: object) -> str:
     lines = str(error).strip().splitlines()
     return lines[0][:120] if lines else type(error).__name__
+
+
+_VERSION_2 = re.compile(rb"^[0-9 \x00]{6}[DRQM][ \x00]")
+
+FORMAT = RecordFormat(
+    name="miniSEED",
+    suffixes=(".mseed", ".msd"),
+    claims=lambda data: (
+        (data[:2] == b"MS" and data[2:3] == b"\x03") or _VERSION_2.match(data[:8]) is not None
+    ),
+    read=lambda data, path, wanted: read_miniseed(data, path, wanted=wanted),
+)

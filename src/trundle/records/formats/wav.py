@@ -11,8 +11,9 @@ from scipy.io import wavfile
 
 from trundle.errors import InputError
 from trundle.records.raw import RawRecord
+from trundle.records.record_format import RecordFormat
 
-__all__ = ["read_wav"]
+__all__ = ["FORMAT", "read_wav"]
 
 
 def read_wav(data: bytes, path: Path) -> RawRecord:
@@ -57,3 +58,12 @@ def read_wav(data: bytes, path: Path) -> RawRecord:
         units=("",) * len(samples),
         whole=whole,
     )
+
+
+FORMAT = RecordFormat(
+    name="WAV",
+    suffixes=(".wav",),
+    claims=lambda data: data[:4] in {b"RIFF", b"RIFX", b"RF64"} and data[8:12] == b"WAVE",
+    read=lambda data, path, _wanted: read_wav(data, path),
+    full_scale=True,
+)

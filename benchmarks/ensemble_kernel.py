@@ -20,7 +20,7 @@ from settings import dgemm_rate, rear_layout
 from threadpoolctl import ThreadpoolController
 
 from trundle.simulate.ensembles import batch_size
-from trundle.simulate.layout import _springs
+from trundle.simulate.layout import springs_of
 from trundle.simulate.wheels.roads import roads_under_wheels
 
 MODES, STEPS, RUNS, DT = 1000, 4000, 1000, 0.005
@@ -41,7 +41,7 @@ def kernel(layout) -> tuple[float, float]:
 
 def numpy_steps(layout, road):
     """Step all runs in plain numpy; return accelerations at the point, and seconds a step."""
-    springs, floor = _springs(layout.crossings), layout.floor
+    springs, floor = springs_of(layout.crossings), layout.floor
     vehicle, e, modal = layout.steps_of(layout.crossings), springs.contact_map, floor.propagator
     felt = np.hstack([springs.stiffness * e, springs.damping * e])
     start_v, end_v = vehicle.from_start @ e.T, vehicle.from_end @ e.T

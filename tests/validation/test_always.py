@@ -26,7 +26,7 @@ from trundle.route import DriveIn, Hermite, Route
 from trundle.simulate import Coupled, Crossing, ensemble, prepare
 from trundle.simulate.direct import march
 from trundle.simulate.direct.floors import FullFloor
-from trundle.simulate.layout import _springs
+from trundle.simulate.layout import springs_of
 from trundle.simulate.modal.block_march import Steps, drive_in_blocks
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.point_motion import complete, point_filters
@@ -70,7 +70,7 @@ def direct_states(floor, crossing, method, duration):
         sparse.csr_array(np.eye(1, floor.n_dofs)), flexibility=prepared.flexibility, coupled=True,
     )  # fmt: skip
     law = march.ContactLaw(
-        springs=_springs((crossing,)),
+        springs=springs_of((crossing,)),
         vehicle=NewmarkPropagator(crossing.vehicle.free_system, method.integration),
     )
     vehicle, forces = march.run_in(law, timeline, road)
@@ -104,7 +104,7 @@ def modal_states(floor, crossing, method, duration):
         ExactRecursion(system, method.integration.dt)
         for system in (crossing.vehicle.free_system, crossing.vehicle.system)
     )
-    springs = _springs((crossing,))
+    springs = springs_of((crossing,))
     record = drive_in_blocks(
         Steps(
             vehicles=((springs, standing),), springs=springs, together=standing, timeline=timeline

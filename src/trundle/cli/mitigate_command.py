@@ -54,13 +54,7 @@ def mitigate(
     check_executor(workers, scheduler)
     study = load_study(path)
     check_target(out, "comparison")
-    at = sorted(set(_each("--speeds", speeds, lambda text: to_si(text, "speed"))))
-    if not at or at[0] <= 0.0:
-        raise InputError(f"--speeds {speeds!r}: give speeds above 0, such as '5 km/h, 15 km/h'")
-    letters = _each("--roads", roads, lambda text: one_of("--roads", text, CLASS_NAMES))
-    classes = list(dict.fromkeys(letters))
-    if not classes:
-        raise InputError(f"--roads {roads!r}: give road classes, such as 'A, B'")
+    at, classes = _speeds(speeds), _classes(roads)
     levers = _levers(vehicles, slabs, dampings, isolators)
     changes = every_combination(levers) if combine else each_change(levers)
     check_changes(study, changes)
@@ -86,7 +80,11 @@ def mitigate(
             executor=executor,
         )
         write_mitigation_report(sweep, folder)
-    report = out.resolve() / "report.html"
+    _say(sweep, out.resolve() / "report.html", show)
+
+
+def _say(sweep: Sweep, report: Path, show: Show) -> None:
+    """Say what came out, as it was asked for."""
     if show == "tables":
         _print(sweep)
     for warning in sweep.warnings():
@@ -97,6 +95,22 @@ def mitigate(
         warnings = [str(warning) for warning in sweep.warnings()]
         rows = mitigation_rows(sweep)
         say_json({"outcomes": rows, "warnings": warnings, "report": str(report)})
+
+
+def _speeds(text: str) -> list[float]:
+    """Return the speeds that are asked for [m/s]."""
+    at = sorted(set(_each("--speeds", text, lambda part: to_si(part, "speed"))))
+    if not at or at[0] <= 0.0:
+        raise InputError(f"--speeds {text!r}: give speeds above 0, such as '5 km/h, 15 km/h'")
+    return at
+
+
+def _classes(text: str) -> list[str]:
+    """Return the road classes that are asked for, each once."""
+    letters = _each("--roads", text, lambda part: one_of("--roads", part, CLASS_NAMES))
+    if not letters:
+        raise InputError(f"--roads {text!r}: give road classes, such as 'A, B'")
+    return list(dict.fromkeys(letters))
 
 
 def _levers(vehicles: str, slabs: str, dampings: str, isolators: str) -> list[list[Change]]:

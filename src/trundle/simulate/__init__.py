@@ -11,7 +11,8 @@ from trundle.simulate.ensembles import (
     runs_with_mean,
 )
 from trundle.simulate.fitness import resolved_to
-from trundle.simulate.layout import Layout, lay_out
+from trundle.simulate.laying_out import lay_out
+from trundle.simulate.layout import Layout
 from trundle.simulate.modal.residual import StaticFlexibility
 from trundle.simulate.point_load import point_load_deflection
 from trundle.simulate.prepared import PreparedFloor, prepare

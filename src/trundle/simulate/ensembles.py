@@ -14,7 +14,8 @@ from trundle._typing import Array
 from trundle.simulate.crossing import Crossing, Integration, Interaction
 from trundle.simulate.direct.march import Record
 from trundle.simulate.fitness import contact_warnings
-from trundle.simulate.layout import Layout, lay_out, lay_out_on_rigid_ground
+from trundle.simulate.laying_out import lay_out, lay_out_on_rigid_ground
+from trundle.simulate.layout import Layout
 from trundle.simulate.prepared import PreparedFloor
 from trundle.simulate.runs import MeanResponse, Runs
 from trundle.simulate.wheels.roads import roads_under_wheels

@@ -14,10 +14,10 @@ from scipy import linalg
 from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import REACH, ExactRecursion
-from trundle.errors import UnstableStepError
 from trundle.simulate.direct.march import Progress, Record, Springs
 from trundle.simulate.modal.blocks import Block, contact_block, load_block
 from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.modal.histories import Histories
 from trundle.simulate.modal.powers import FloorPowers, VehiclePowers
 from trundle.simulate.modal.rigid_march import forces_on_rigid_ground
 from trundle.simulate.wheels.roads import RoadUnderWheels
@@ -143,7 +143,7 @@ class _March:
 
     def on_rigid_ground(self) -> Record:
         """Return the forces on rigid ground, and no motion."""
-        out = _Histories(None, self._steps.timeline, self.forces)
+        out = Histories(None, self._steps.timeline, self.forces)
         out.check()
         return out.done()
 
@@ -179,7 +179,7 @@ class _March:
     def record(self, floor: ModalFloor, progress: Progress | None, *, coupled: bool) -> Record:
         """Carry on over the record; uncoupled forces load the floor as they are."""
         n_steps = len(self.forces)
-        out = _Histories(floor, self._steps.timeline, self.forces)
+        out = Histories(floor, self._steps.timeline, self.forces)
         out.begin(self._x)
         forming = self._form(floor, solve=coupled)
 
@@ -198,7 +198,7 @@ class _March:
         self._go_on(floor, out)
         return out.done()
 
-    def _go_on(self, floor: ModalFloor, out: _Histories) -> None:
+    def _go_on(self, floor: ModalFloor, out: Histories) -> None:
         """Carry the floor on behind the record under the last forces, where wheels stand still."""
         powers, last = self._powers, len(self.forces) - 1
         load = floor.loads(last, last + 1)[0].T
@@ -237,7 +237,7 @@ class _March:
             )
         return lambda first, count: load_block(floor, powers, first, count)
 
-    def _carry(self, blocks: list[tuple[int, Block]], out: _Histories) -> None:
+    def _carry(self, blocks: list[tuple[int, Block]], out: Histories) -> None:
         """Carry every run over blocks, each given with the step before it."""
 
         def carry(number: int) -> None:
@@ -330,61 +330,3 @@ def _parts(n_steps: int, length: int) -> Iterator[tuple[int, int]]:
     """Give the step before each block and the number of steps in it."""
     for first in range(0, n_steps, length):
         yield first, min(length, n_steps - first)
-
-
-class _Histories:
-    """Collect forces and outputs block by block, and stop at the first that is not finite."""
-
-    def __init__(self, floor: ModalFloor | None, timeline: Timeline, forces: Array) -> None:
-        self._floor, self._time = floor, timeline.time[timeline.n_run_in :]
-        n_points = 0 if floor is None else len(floor.points)
-        self._motion = np.zeros((3, len(self._time) + REACH, n_points, forces.shape[2]))
-        self._forces = forces
-
-    def begin(self, states: list[Array]) -> None:
-        """Read the points before the first step."""
-        if self._floor is not None:
-            x = np.hstack(states)
-            half, points = len(x) // 2, self._floor.points
-            self._motion[0, 0] = points @ x[:half]
-            load = self._floor.loads(0, 1)[0].T @ self._forces[0]
-            held = (points * self._floor.propagator.square) @ x[:half]
-            self._motion[2, 0] = -points @ load - held
-
-    def put(self, step: int, runs: slice, seen: Array) -> None:
-        """Keep what the points do in some runs from a step on."""
-        n_points, n_runs = self._motion.shape[2], seen.shape[1]
-        motion = seen.reshape(-1, 3, n_points, n_runs)
-        rows = slice(step, step + len(motion))
-        self._motion[:, rows, :, runs] = motion.swapaxes(0, 1)
-        if not np.isfinite(seen).all():
-            self._stop(step, self._forces[rows, :, runs])
-        self.check(step, step + len(motion), runs)
-
-    def behind(self, late: int, runs: slice, seen: Array) -> None:
-        """Keep what the points do so many steps behind the record."""
-        self._motion[:, len(self._time) + late, :, runs] = seen.reshape(3, -1, seen.shape[1])
-
-    def check(self, start: int = 0, stop: int | None = None, runs: slice = slice(None)) -> None:
-        """Stop at the first contact force that is not finite."""
-        forces = self._forces[start:stop, :, runs]
-        if not np.isfinite(forces).all():
-            self._stop(start, forces)
-
-    def _stop(self, step: int, forces: Array) -> None:
-        bad = ~np.isfinite(forces).all(axis=(1, 2))
-        late = step + (int(np.argmax(bad)) if bad.any() else len(forces) - 1)
-        time = float(self._time[late])
-        raise UnstableStepError(
-            f"a number stopped being finite at step {late}, t = {time:g} s; shorten the time step",
-            step=late,
-            time=time,
-        )
-
-    def done(self) -> Record:
-        return Record(
-            displacement=self._motion[0],
-            velocity=self._motion[1],
-            acceleration=self._motion[2],
-            forces=self._forces,
-        )

@@ -21,12 +21,10 @@ from trundle.response import (
     percentile_interval,
     reduce_runs,
 )
-from trundle.signals import Averaging, nominal_frequency
+from trundle.signals import TOP_FREQUENCY, Averaging, nominal_frequency
 from trundle.simulate import Coverage, Runs
 
 __all__ = ["assess", "assess_reduced", "best_class", "spectra_asked_for"]
-
-_TOP = 80.0  # Hz: how far single numbers are asked to reach
 
 
 @kinds_checked
@@ -63,7 +61,7 @@ def assess(
         reduce_runs(runs, averaging=averaging, quantities=spectra_asked_for(many)),
         many,
         percentile=percentile,
-        top=min(runs.f_max, runs.sampling_frequency / 2.5),
+        top=runs.top,
         events=events,
         coverage=runs.coverage,
     )
@@ -301,7 +299,10 @@ def _by_number(
     value = float(np.percentile(values, percentile))
     margin = limit / max(value, np.finfo(float).tiny)
     # A broadband number covers the curve only as far as the computation reaches.
-    (top, coverage), asked = reach, float(min(criterion.frequencies[-1], _TOP)) * (1 - 1e-6)
+    (top, coverage), asked = (
+        reach,
+        float(min(criterion.frequencies[-1], TOP_FREQUENCY)) * (1 - 1e-6),
+    )
     missing = () if top >= asked else (round(asked, 1),)
     unexcited = () if coverage.excited_to >= asked else (round(asked, 1),)
     reasons = (

@@ -14,12 +14,12 @@ from trundle.criteria.curve import Criterion
 from trundle.criteria.verdict import STILL
 from trundle.errors import InputError
 from trundle.response import FloorMap
+from trundle.signals import TOP_FREQUENCY
 from trundle.simulate import Coverage
 
 __all__ = ["ClassMap", "class_map", "envelope_of"]
 
 _MAPPED = ("band_rms_velocity", "peak_acceleration")
-_TOP = 80.0  # Hz: how far peaks are asked to reach
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -183,7 +183,7 @@ def _by_peak(
     margin = limit / np.maximum(value, np.finfo(float).tiny)
     above = (floor.peak_acceleration > limit).mean(axis=0)
     moves = floor.peak_acceleration.max(axis=0) > STILL
-    reach = min(float(criterion.frequencies[-1]), _TOP)
+    reach = min(float(criterion.frequencies[-1]), TOP_FREQUENCY)
     return (
         np.where(moves, margin, np.nan),
         np.full(len(value), np.nan),

@@ -11,6 +11,7 @@ import numpy as np
 
 from trundle._kinds import kinds_checked
 from trundle._progress import Tell, silent
+from trundle._words import in_kmh
 from trundle.criteria import assess_reduced
 from trundle.dynamics import Modes, repeatable
 from trundle.errors import InputError
@@ -122,7 +123,7 @@ def check_speeds(study: Study, speeds: Sequence[float]) -> None:
         steps = longest / speed / dt if speed > 0.0 else np.inf
         if not _LEAST_STEPS < steps < _MOST_STEPS:
             raise InputError(
-                f"a speed of {3.6 * speed:g} km/h crosses the longest route in {steps:.3g} steps "
+                f"a speed of {in_kmh(speed, 6)} crosses the longest route in {steps:.3g} steps "
                 f"of {1e3 * dt:g} ms; {_LEAST_STEPS} to {_MOST_STEPS} are computed"
             )
 

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from trundle._words import in_kmh
 from trundle.mitigate.changes import Change, changed_study
 from trundle.mitigate.tasks import ChangesTask
 from trundle.road import RoadClass
@@ -44,7 +45,7 @@ class Combination:
     @property
     def label(self) -> str:
         """What is told while it is run."""
-        return f"{self.changes[0].label}: {self.case.name} at {3.6 * self.speed:.3g} km/h"
+        return f"{self.changes[0].label}: {self.case.name} at {in_kmh(self.speed)}"
 
     def tasks(self, study: Study) -> tuple[ChangesTask, ...]:
         """Return its tasks."""

@@ -28,7 +28,7 @@ from trundle.response import (
 )
 from trundle.results.owned import check_unchanged
 from trundle.results.zarr_check import check_whole, check_zarr
-from trundle.signals import Averaging, Record, doubtful_channels
+from trundle.signals import Averaging, Record, band_limit, doubtful_channels
 from trundle.simulate import Runs
 
 __all__ = ["RecordResult", "Simulated", "assess_record", "read_simulated"]
@@ -163,7 +163,7 @@ def assess_record(
         averaging=averaging,
         quantities=spectra_asked_for(many),
     )
-    top = record.sampling_frequency / 2.5
+    top = band_limit(record.sampling_frequency)
     found = assess_reduced(
         reduced, many, percentile=100.0, top=top, events=events, axes=record.axes
     )

@@ -127,7 +127,7 @@ def runs_part(
         contact_names=tuple(runs.contact_names),
         truncation=truncation,
         coverage=runs.coverage,
-        top=min(runs.f_max, runs.sampling_frequency / 2.5),
+        top=runs.top,
         ends=float(runs.time[-1]),
         warnings=tuple(w for w in runs.warnings if w.subject != LOST_CONTACT),
     )

@@ -17,11 +17,10 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.route.locate import Deck, deck_of
 from trundle.structure import Floor
+from trundle.structure.elements import ETA, XI
 
 __all__ = ["ContactRows", "ContactShape", "Hat", "Hermite", "contact_rows"]
 
-_XI = np.array([-1.0, 1.0, 1.0, -1.0])
-_ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 _UZ, _RX, _RY = 2, 3, 4
 _ON_PLANE = 1e-6  # m, and sine of the angle to a mirror plane
 
@@ -197,8 +196,8 @@ def _cubic(t: Array) -> tuple[Array, Array, Array, Array]:
 def _quad_weights(local: Array, corners: Array, shape: ContactShape) -> tuple[Array, Array]:
     """Return weights (n, 12) on (uz, rx, ry) of four nodes and their x, y gradients."""
     xi, eta = local[:, :1], local[:, 1:]
-    linear = 0.25 * (1 + xi * _XI) * (1 + eta * _ETA)
-    d_linear = np.stack([0.25 * _XI * (1 + eta * _ETA), 0.25 * _ETA * (1 + xi * _XI)], axis=1)
+    linear = 0.25 * (1 + xi * XI) * (1 + eta * ETA)
+    d_linear = np.stack([0.25 * XI * (1 + eta * ETA), 0.25 * ETA * (1 + xi * XI)], axis=1)
     if isinstance(shape, Hat):
         value = _spread(linear)
         natural = np.stack([_spread(d_linear[:, 0]), _spread(d_linear[:, 1])], axis=1)
@@ -220,14 +219,14 @@ _Pair: TypeAlias = tuple[Array, Array]  # functions of xi and of eta, multiplied
 def _hermite_quad(local: Array, corners: Array) -> tuple[Array, Array]:
     fx, gx, dfx, dgx = _cubic(local[:, 0])
     fy, gy, dfy, dgy = _cubic(local[:, 1])
-    i, j = (_XI > 0).astype(int), (_ETA > 0).astype(int)
+    i, j = (XI > 0).astype(int), (ETA > 0).astype(int)
     # Edge vectors at each node turn its rotations into slopes along xi and eta:
     # dw/dx = -ry and dw/dy = rx.
     edges = [_node_edges(corners, axis) for axis in (0, 1)]
 
     # On a quadrilateral that is no parallelogram a plane has a twist in xi and eta; taking it
     # from the nodes' slopes keeps planes, and so a load's moments, exact. Zero on rectangles.
-    twist = 0.25 * np.einsum("a,nak->nk", _XI * _ETA, corners)[:, None, :]
+    twist = 0.25 * np.einsum("a,nak->nk", XI * ETA, corners)[:, None, :]
 
     def combine(deflection: _Pair, along_xi: _Pair, along_eta: _Pair, both: _Pair) -> Array:
         on_xi, on_eta, on_both = (

@@ -12,11 +12,10 @@ from scipy.spatial import cKDTree
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure import Floor
+from trundle.structure.elements import ETA, XI
 
 __all__ = ["Deck", "deck_of"]
 
-_XI = np.array([-1.0, 1.0, 1.0, -1.0])
-_ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 _CANDIDATES = 12
 _BLOCK = 20_000  # places looked up at once, to bound memory
 _EDGE = 1e-6  # share of an element by which a place may lie outside it
@@ -110,8 +109,11 @@ class Deck:
         local = np.zeros((len(places), 2))
         for _ in range(8):
             xi, eta = local[:, :1], local[:, 1:]
-            shape = 0.25 * (1 + xi * _XI) * (1 + eta * _ETA)
-            d_xi, d_eta = 0.25 * _XI * (1 + eta * _ETA), 0.25 * _ETA * (1 + xi * _XI)
+            shape = 0.25 * (1 + xi * XI) * (1 + eta * ETA)
+            d_xi, d_eta = (
+                0.25 * XI * (1 + eta * ETA),
+                0.25 * ETA * (1 + xi * XI),
+            )
             gap = places - np.einsum("na,naj->nj", shape, corners)
             jacobian = np.stack(
                 [np.einsum("na,naj->nj", d, corners) for d in (d_xi, d_eta)], axis=2

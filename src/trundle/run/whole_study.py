@@ -9,6 +9,7 @@ import numpy as np
 
 from trundle._kinds import kinds_checked
 from trundle._progress import Tell, silent
+from trundle._words import in_kmh
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modal, Modes, repeatable
 from trundle.errors import InputError
@@ -83,7 +84,7 @@ def run_study(
 
 
 def _label(job: Job) -> str:
-    at = "" if job.speed is None else f" at {3.6 * job.speed:.3g} km/h"
+    at = "" if job.speed is None else f" at {in_kmh(job.speed)}"
     return f"{job.case.name}{at}, {job.method.name}"
 
 

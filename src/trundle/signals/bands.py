@@ -16,9 +16,11 @@ __all__ = [
     "FILTER_ORDER",
     "HIGHEST_BAND",
     "LOWEST_BAND",
+    "TOP_FREQUENCY",
     "band_delay",
     "band_edges",
     "band_filter",
+    "band_limit",
     "filter_bands",
     "filter_zero_phase",
     "mid_band_frequencies",
@@ -29,11 +31,19 @@ __all__ = [
 LOWEST_BAND, HIGHEST_BAND = 0, 19
 """Numbers k of the 1 Hz and 80 Hz bands; the exact mid-band frequency is 10^(k/10)."""
 
+TOP_FREQUENCY = 80.0
+"""Nominal frequency of the highest band [Hz]: how far anything is asked to reach."""
+
 _BENT = 0.08  # of the sampling frequency: above, the bilinear transform bends a band's skirts
 _FLOOR = 0.1  # of a filter's passband: what passes less is fitted less closely
 FILTER_ORDER = 4  # meets class 1 of IEC 61260-1 from 1 to 80 Hz at 200 Hz and more; 3 does not
 _SAMPLES = 2.5  # sampling frequency over the highest mid-band frequency
 _NOMINAL = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
+
+
+def band_limit(sampling_frequency: float) -> float:
+    """Return the highest mid-band frequency that a sampling frequency shows [Hz]."""
+    return sampling_frequency / _SAMPLES
 
 
 def mid_band_frequencies(

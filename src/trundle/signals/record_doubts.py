@@ -6,6 +6,7 @@ import numpy as np
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
+from trundle.signals.bands import TOP_FREQUENCY, band_limit
 from trundle.signals.record import Record
 
 __all__ = ["doubtful_channels", "record_warnings"]
@@ -168,8 +169,8 @@ def _clipped(name: str, row: Array) -> list[FitnessWarning]:
 
 def _range(record: Record) -> list[FitnessWarning]:
     found = []
-    top = record.sampling_frequency / 2.5
-    if top < 80.0 * (1 - 1e-9):
+    top = band_limit(record.sampling_frequency)
+    if top < TOP_FREQUENCY * (1 - 1e-9):
         found.append(
             FitnessWarning(
                 subject="sampling rate",

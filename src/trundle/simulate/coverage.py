@@ -10,13 +10,12 @@ from jaxtyping import Bool, Float
 
 from trundle._typing import Array
 from trundle.road import Profile
-from trundle.signals import band_edges
+from trundle.signals import TOP_FREQUENCY, band_edges
 from trundle.simulate.crossing import Crossing
 
 __all__ = ["Coverage", "coverage_of"]
 
 _WHOLE = 0.99  # of a band's upper edge, that the road's waves must reach
-_TOP = 80.0  # Hz: the highest band that is assessed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,11 +60,11 @@ class Coverage:
                 f"{self.leaves:.3g} s: lengthen or remove duration"
             )
         if waves:
-            times = 10.0**0.05 * _TOP / self.excited_to
+            times = 10.0**0.05 * TOP_FREQUENCY / self.excited_to
             found.append(
                 f"the road's waves end at {self.excited_to:.3g} Hz at this speed, and nothing "
-                f"excites the bands above: raise n_max {times:.2g} times for {_TOP:g} Hz, with a "
-                "contact patch"
+                "excites the bands above: raise n_max "
+                f"{times:.2g} times for {TOP_FREQUENCY:g} Hz, with a contact patch"
             )
         return tuple(found)
 

@@ -15,7 +15,10 @@ from trundle.road import Profile, RoadClass, RoughnessBand
 from trundle.route import ContactShape, DriveIn, Entry, Hermite, Route, StaticStart
 from trundle.vehicle import Vehicle
 
-__all__ = ["Coupled", "Crossing", "Decoupled", "Integration", "Interaction"]
+__all__ = ["TAIL", "Coupled", "Crossing", "Decoupled", "Integration", "Interaction"]
+
+TAIL = 5.0
+"""Free decay after the last wheel has left that a record holds, unless its length is given [s]."""
 
 Integration: TypeAlias = Newmark | Modal
 """How the floor's equations are integrated in time."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from trundle._words import in_kmh
 from trundle.dynamics import TOP, Modal, Modes, Newmark, Rayleigh
 from trundle.errors import FitnessWarning
 from trundle.road import FITTED_RANGE, RoadClass
 from trundle.route import Hat
+from trundle.signals import TOP_FREQUENCY
 from trundle.simulate.crossing import Crossing, Integration, Interaction
 from trundle.simulate.vehicle_fitness import axle_hop_warnings
 from trundle.structure import Floor
@@ -97,7 +99,7 @@ def resolved_to(integration: Integration) -> float:
 
 
 def _time_step(method: Interaction) -> list[FitnessWarning]:
-    dt, top = method.integration.dt, 80.0
+    dt, top = method.integration.dt, TOP_FREQUENCY
     newmark = isinstance(method.integration, Newmark)
     shown = (_NEWMARK if newmark else TOP) / dt
     if shown > top:
@@ -153,12 +155,12 @@ def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
         message = (
             f"waves to {n_max:.3g} cycle/m are beyond ISO 8608's fitted range "
             f"({FITTED_RANGE[1]:g}); the road above {speed * FITTED_RANGE[1]:.3g} Hz at "
-            f"{3.6 * speed:.3g} km/h is extrapolated"
+            f"{in_kmh(speed)} is extrapolated"
         )
     else:
         message = (
             f"waves end at {n_max:.3g} cycle/m, which is {speed * n_max:.3g} Hz at "
-            f"{3.6 * speed:.3g} km/h; the road excites nothing above it, and bands there are not "
+            f"{in_kmh(speed)}; the road excites nothing above it, and bands there are not "
             f"assessed: n_max = {_TOP_EDGE / speed:.3g} 1/m with a contact patch reaches 80 Hz"
         )
     return [FitnessWarning(subject=f"roughness band, {crossing.route.name}", message=message)]

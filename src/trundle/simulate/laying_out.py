@@ -16,7 +16,7 @@ from trundle.dynamics import (
 )
 from trundle.errors import InputError
 from trundle.route import ContactRows, Hermite, contact_rows
-from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
+from trundle.simulate.crossing import TAIL, Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.direct.floors import FullFloor
 from trundle.simulate.fitness import fitness_warnings
 from trundle.simulate.layout import Layout, springs_of
@@ -31,8 +31,6 @@ from trundle.simulate.wheels.timeline import Timeline, operator_rows, timeline_o
 from trundle.structure import Floor
 
 __all__ = ["lay_out", "lay_out_on_rigid_ground"]
-
-_TAIL = 5.0  # s of free decay after the last wheel has left, unless a duration is given
 
 
 @kinds_checked
@@ -190,4 +188,4 @@ def _natural_duration(crossings: tuple[Crossing, ...]) -> float:
     last = max(crossing.exit_time for crossing in crossings)
     if not np.isfinite(last):
         raise InputError("a vehicle stops on its route; give a duration")
-    return last + _TAIL
+    return last + TAIL

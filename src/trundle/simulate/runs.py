@@ -9,6 +9,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
+from trundle.signals import band_limit
 from trundle.simulate.coverage import Coverage
 
 __all__ = ["MeanResponse", "Runs"]
@@ -86,6 +87,11 @@ class Runs:
     def dt(self) -> float:
         """Time step [s]."""
         return float(self.time[1] - self.time[0])
+
+    @property
+    def top(self) -> float:
+        """Highest mid-band frequency that modes, step and sampling show as it is [Hz]."""
+        return min(self.f_max, band_limit(self.sampling_frequency))
 
     @property
     def sampling_frequency(self) -> float:

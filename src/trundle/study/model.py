@@ -13,6 +13,7 @@ from trundle.road import RoadClass, RoughnessBand
 from trundle.route import ConstantSpeed, Entry, Route
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
+from trundle.simulate.crossing import TAIL
 from trundle.structure import Floor, FloorPlan
 from trundle.study.map_plan import MapPlan
 from trundle.vehicle import Vehicle
@@ -27,9 +28,6 @@ __all__ = [
     "PrintedBound",
     "Study",
 ]
-
-
-_TAIL = 5.0  # s of record after the last wheel has left
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -280,7 +278,7 @@ class Study:
 
     def long_enough(self, crossings: Sequence[Crossing]) -> float:
         """Return the length of a record in which crossings end and the floor comes to rest [s]."""
-        enough = max(one.exit_time for one in crossings) + _TAIL
+        enough = max(one.exit_time for one in crossings) + TAIL
         return max(self.duration or 0.0, float(np.ceil(enough)))
 
     @property

@@ -13,6 +13,7 @@ from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
 from trundle._typing import Array
+from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
@@ -77,11 +78,11 @@ def plan_figure(
             xytext=route.points[-2],
             arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 2.0},
         )
-        speed = 3.6 * float(route.law.speed(0.0))
+        speed = in_kmh(float(route.law.speed(0.0)))
         middle, direction = route.locate(np.array([0.72 * route.length]))
         angle = np.degrees(np.arctan2(direction[0, 1], direction[0, 0]))
         axes.annotate(
-            f"{name}, {speed:.3g} km/h",
+            f"{name}, {speed}",
             middle[0],
             rotation=angle,
             rotation_mode="anchor",

@@ -7,7 +7,16 @@ goes to a floor by ``Floor(others=(group, ...))``.
 from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Elements
-from trundle.structure.elements.quad_shell import ShellGroup
+from trundle.structure.elements.quad_shell import ETA, XI, ShellGroup
 from trundle.structure.elements.spring import SpringGroup
 
-__all__ = ["GROUND", "BeamGroup", "Elements", "PointMasses", "ShellGroup", "SpringGroup"]
+__all__ = [
+    "ETA",
+    "GROUND",
+    "XI",
+    "BeamGroup",
+    "Elements",
+    "PointMasses",
+    "ShellGroup",
+    "SpringGroup",
+]

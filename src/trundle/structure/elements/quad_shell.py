@@ -25,10 +25,12 @@ from trundle.errors import InputError
 from trundle.structure.frames import rotate_blocks, shell_frames
 from trundle.structure.sections import ShellSection
 
-__all__ = ["ShellGroup", "shell_mass", "shell_stiffness"]
+__all__ = ["ETA", "XI", "ShellGroup", "shell_mass", "shell_stiffness"]
 
-_XI = np.array([-1.0, 1.0, 1.0, -1.0])
-_ETA = np.array([-1.0, -1.0, 1.0, 1.0])
+XI = np.array([-1.0, 1.0, 1.0, -1.0])
+ETA = np.array([-1.0, -1.0, 1.0, 1.0])
+"""Corners of a quadrilateral in its own coordinates, in order round it."""
+
 _GAUSS = 1.0 / np.sqrt(3.0)
 _SHEAR_CORRECTION = 5.0 / 6.0
 _UX, _UY, _UZ, _RX, _RY, _RZ = (np.arange(4) * 6 + i for i in range(6))
@@ -103,7 +105,7 @@ def _gauss_points() -> list[tuple[float, float]]:
 
 
 def _parent_derivatives(xi: float, eta: float) -> Array:
-    return 0.25 * np.array([_XI * (1 + eta * _ETA), _ETA * (1 + xi * _XI)])
+    return 0.25 * np.array([XI * (1 + eta * ETA), ETA * (1 + xi * XI)])
 
 
 def _jacobian(local: Array, xi: float, eta: float) -> tuple[Array, Array]:
@@ -121,7 +123,7 @@ def _jacobian(local: Array, xi: float, eta: float) -> tuple[Array, Array]:
 
 def _shape_functions(local: Array, xi: float, eta: float) -> tuple[Array, Array, Array]:
     """Return N (4,), dN/d(x, y) (n, 2, 4) and det J (n,)."""
-    shape = 0.25 * (1 + xi * _XI) * (1 + eta * _ETA)
+    shape = 0.25 * (1 + xi * XI) * (1 + eta * ETA)
     jacobian, det = _jacobian(local, xi, eta)
     gradient = np.linalg.solve(
         jacobian, np.broadcast_to(_parent_derivatives(xi, eta), (len(local), 2, 4))
@@ -190,7 +192,7 @@ def _add_bending(stiffness: Array, local: Array, section: ShellSection) -> None:
 
 def _natural_shear(local: Array, xi: float, eta: float, direction: int) -> Array:
     """Return the covariant shear strain row (n, 12) for (w, rx, ry) at one tying point."""
-    shape = 0.25 * (1 + xi * _XI) * (1 + eta * _ETA)
+    shape = 0.25 * (1 + xi * XI) * (1 + eta * ETA)
     jacobian, _ = _jacobian(local, xi, eta)
     row = np.zeros((len(local), 12))
     row[:, 0:4] = _parent_derivatives(xi, eta)[direction]
@@ -237,7 +239,7 @@ def _add_drilling_hourglass(stiffness: Array, local: Array, section: ShellSectio
     a small share of the penalty, orthogonal to a uniform rotation and so free of work in
     any rigid-body motion or constant strain.
     """
-    patterns = np.array([_XI, _ETA, _XI * _ETA]) / 4.0
+    patterns = np.array([XI, ETA, XI * ETA]) / 4.0
     _, det = _jacobian(local, 0.0, 0.0)
     share = 1e-3 * section.material.shear_modulus * section.thickness
     block = np.einsum("e,pa,pb->eab", 4.0 * det * share, patterns, patterns)

@@ -10,6 +10,7 @@ from pydantic import Field
 
 from trundle.criteria import Criterion, find_criterion, shaped
 from trundle.errors import InputError, Problem
+from trundle.signals import TOP_FREQUENCY
 from trundle.study.model import Assessment, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.document import StudyFile
@@ -24,8 +25,6 @@ from trundle.study_file.kinds import SectionKind
 from trundle.study_file.user_criteria import read_criteria
 
 __all__ = ["CRITERIA", "build", "fields", "problems"]
-
-_TOP = 80.0  # Hz: bands are assessed up to here
 
 
 class CriteriaSection(Section):
@@ -110,7 +109,7 @@ def _assessed_step(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterat
             curve = find_criterion(name)
         except InputError:
             continue  # reported where the curves are read, or the user's own
-        top = max(top, min(float(curve.frequencies[-1]), _TOP))
+        top = max(top, min(float(curve.frequencies[-1]), TOP_FREQUENCY))
     dt = methods[criteria.method].interaction.integration.dt
     if top and dt > 1.0 / (2.5 * top) * (1 + 1e-9):
         yield Problem(

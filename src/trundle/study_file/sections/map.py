@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from trundle._typing import Array
+from trundle._words import in_kmh
 from trundle.dynamics import Modal
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
@@ -225,7 +226,7 @@ def _speeds(given: _Checked) -> Iterator[Problem]:
     )
     contacts = sum(drive.vehicle.n_contacts for drive in given.drives.values())
     for i, speed in enumerate(given.section.speeds):
-        place, value = f"map.speeds[{i + 1}]", f"{3.6 * speed:g} km/h"
+        place, value = f"map.speeds[{i + 1}]", f"{in_kmh(speed, 6)}"
         limit = 0.5 / (speed * dt)
         if not given.band_follows_dt and given.band.n_max > limit * (1 + 1e-9):
             yield Problem(

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from trundle._words import in_kmh
 from trundle.errors import Problem
 from trundle.road import RoadClass, RoughnessBand
 from trundle.study.model import Drive, MethodPlan
@@ -111,7 +112,7 @@ def _roughness(
                 yield Problem(
                     place=f"method {method.name!r}.dt",
                     value=f"{1e3 * dt:g} ms",
-                    rule=f"at {3.6 * speed:g} km/h on route {name!r} this step follows waves to "
+                    rule=f"at {in_kmh(speed, 6)} on route {name!r} this step follows waves to "
                     f"{limit:.3g} 1/m only, and the road's begin at {band.n_min:g} 1/m",
                     remedy="shorten dt, or lower n_min or the speed",
                 )

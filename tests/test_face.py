@@ -2,6 +2,7 @@
 
 import json
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +10,14 @@ import pytest
 
 import trundle as tr
 from studies import GOOD, MAP
-from trundle.errors import InputError, StudyError
+from trundle.errors import FitnessWarning, InputError, StudyError
 from trundle.mitigate import Change
 from trundle.report.html import embedded
 from trundle.results.codec import keep_value, kept_value, pack, unpack
+from trundle.results.field_kinds import fields_hold
 from trundle.results.kept import write_kept
+from trundle.results.maps import MapKey
+from trundle.results.modes import FirstModes
 from trundle.run.fingerprint import digest_of
 
 CURVES = """
@@ -169,3 +173,39 @@ def test_a_file_of_another_kind_is_no_value(tmp_path):
 def test_pictures_go_into_a_new_folder(tmp_path):
     assert embedded([], tmp_path / "figures") == []
     assert (tmp_path / "figures").is_dir()
+
+
+def test_results_that_a_stranger_made_up_are_refused_by_name(done, tmp_path):
+    """Checksums and lists are right, and what is in the files is of another kind."""
+    _, result, _ = done
+    (cell, *_), (pair, *_) = result.cells.values(), result.maps.items()
+    forged = {
+        "index": (5, ("index",), cell),
+        "cell0000": ("x", (cell,), (replace(cell, top="80"), None), (replace(cell, key=None), ())),
+        "map0000": (pair[::-1], (pair[0], None)),
+    }
+    for name, values in forged.items():
+        for i, value in enumerate(values):
+            out = tmp_path / f"{name}-{i}"
+            tr.save(result, out)
+            (out / ".trundle-results").unlink()
+            keep_value(out / "kept" / name, value, "trundle result 1")
+            with pytest.raises(InputError, match=name):
+                tr.read_results(out)
+
+
+def test_fields_hold_what_their_annotations_say():
+    """Each of the kinds that values of results have, and what only looks like it."""
+    cell = {"subject": "a", "message": "b"}
+    assert fields_hold(FitnessWarning, cell)
+    assert not fields_hold(FitnessWarning, cell | {"message": 5})
+    key = {"case": "a", "road": "B", "speed": None}
+    assert fields_hold(MapKey, key)
+    assert fields_hold(MapKey, key | {"speed": 3})
+    assert not fields_hold(MapKey, key | {"speed": True})
+    assert not fields_hold(MapKey, key | {"speed": "3"})
+    arrays = {"frequencies": np.zeros(3), "shapes": np.zeros((4, 2))}
+    assert fields_hold(FirstModes, arrays)
+    assert not fields_hold(FirstModes, arrays | {"shapes": np.zeros(4)})  # an axis is missing
+    assert not fields_hold(FirstModes, arrays | {"shapes": [[0.0]]})
+    assert not fields_hold(FirstModes, arrays | {"shapes": np.array([["x"]])})

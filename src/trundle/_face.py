@@ -9,7 +9,7 @@ from trundle._progress import Tell
 from trundle.criteria import Criterion, all_criteria
 from trundle.mitigate import Change, Sweep
 from trundle.mitigate import try_changes as _try_changes
-from trundle.results.folder import kept_of, read_result
+from trundle.results.folder import files_of, index_of, read_result
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.results.store import write_results
 from trundle.results.study_result import StudyResult
@@ -108,9 +108,11 @@ def read_results(folder: Path | str) -> StudyResult:
     InputError
         No results, those of an earlier version, files that were changed since.
     """
-    kept = kept_of(Path(folder))
-    study = load_study(kept.folder / "study.toml", source=kept.source, files=kept.files)
-    return read_result(kept, study)
+    folder = Path(folder)
+    index = index_of(folder)
+    files = files_of(folder, index)
+    study = load_study(folder / "study.toml", source=index.source, files=files)
+    return read_result(folder, index, study)
 
 
 @kinds_checked

@@ -20,7 +20,9 @@ from trundle.criteria import BandOutcomes, ClassMap, Criterion, Verdict
 from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, ExactStatistics, LargestValues, Reduced
 from trundle.results.cells import Cell, CellKey, History
+from trundle.results.field_kinds import fields_hold
 from trundle.results.kept import read_kept, write_kept
+from trundle.results.kept_index import KeptIndex
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.modes import FirstModes
 from trundle.results.parts import ChangesPart, ExactPart, MapPart, RunsPart
@@ -32,8 +34,8 @@ _CLASSES: Mapping[str, Callable[..., Any]] = {
     kind.__name__: kind
     for kind in (
         BandOutcomes, BandSpectra, Cell, CellKey, ChangesPart, ClassMap, Coverage, Criterion,
-        ExactPart, ExactStatistics, FirstModes, FitnessWarning, History, LargestValues, MapKey,
-        MapPart, Reduced, RunsPart, StudyMap, TruncationChange, Verdict,
+        ExactPart, ExactStatistics, FirstModes, FitnessWarning, History, KeptIndex, LargestValues,
+        MapKey, MapPart, Reduced, RunsPart, StudyMap, TruncationChange, Verdict,
     )
 }  # fmt: skip
 _PLAIN = (str, bool, int, float, type(None))
@@ -125,5 +127,7 @@ def unpack(arrays: Mapping[str, Array], said: Any) -> Any:
     if said.keys() == {"class", "fields"} and said["class"] in _CLASSES:
         kind: Any = _CLASSES[said["class"]]
         if said["fields"].keys() == {field.name for field in dataclasses.fields(kind)}:
-            return kind(**{n: unpack(arrays, value) for n, value in said["fields"].items()})
+            values = {n: unpack(arrays, value) for n, value in said["fields"].items()}
+            if fields_hold(kind, values):
+                return kind(**values)
     raise ValueError("no value of results")

@@ -8,47 +8,26 @@ them is ever executed: see `codec`.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from trundle.criteria import Verdict
 from trundle.errors import InputError
+from trundle.results.cells import Cell
 from trundle.results.codec import keep_value, kept_value
+from trundle.results.field_kinds import holds
+from trundle.results.kept_index import KeptIndex
+from trundle.results.maps import MapKey, StudyMap
 from trundle.results.owned import check_unchanged
 from trundle.results.study_result import StudyResult
 from trundle.study.model import Study
 
-__all__ = ["Kept", "keep_result", "kept_of", "read_result"]
+__all__ = ["files_of", "index_of", "keep_result", "read_result"]
 
 _FOLDER = "kept"
 _LABEL = "trundle result 1"
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Kept:
-    """Hold what a results folder says of itself.
-
-    Attributes
-    ----------
-    folder : Path
-        The results folder.
-    source : str
-        Where the study file stood.
-    files : mapping of str to Path
-        Where the files are now that the study names, by the names that it gives them.
-    n_cells, n_maps : int
-        How many cells and maps are kept.
-    provenance : mapping of str
-        Where the results come from.
-    """
-
-    folder: Path
-    source: str
-    files: Mapping[str, Path]
-    n_cells: int
-    n_maps: int
-    provenance: Mapping[str, Any]
+_CELL = tuple[Cell, tuple[Verdict, ...] | None]
+_MAP = tuple[MapKey, StudyMap]
 
 
 def keep_result(result: StudyResult, folder: Path) -> None:
@@ -72,19 +51,19 @@ def keep_result(result: StudyResult, folder: Path) -> None:
         keep_value(kept / f"cell{i:04d}", (cell, result.verdicts.get(key)), _LABEL)
     for i, pair in enumerate(result.maps.items()):
         keep_value(kept / f"map{i:04d}", pair, _LABEL)
-    index = {
-        "source": study.source,
-        "study": hashlib.sha256(study.text.encode()).hexdigest(),
-        "files": names,
-        "cells": len(result.cells),
-        "maps": len(result.maps),
-        "provenance": result.provenance,
-        "modes": result.modes,
-    }
+    index = KeptIndex(
+        source=study.source,
+        study=hashlib.sha256(study.text.encode()).hexdigest(),
+        files=names,
+        cells=len(result.cells),
+        maps=len(result.maps),
+        modes=result.modes,
+        provenance=result.provenance,
+    )
     keep_value(kept / "index", index, _LABEL)
 
 
-def kept_of(folder: Path) -> Kept:
+def index_of(folder: Path) -> KeptIndex:
     """Return what a results folder says of itself, after a look at its files.
 
     Parameters
@@ -103,44 +82,45 @@ def kept_of(folder: Path) -> Kept:
             "folder"
         )
     check_unchanged(folder, _FOLDER)
-    said = _read(folder, "index")
+    index = _read(folder, "index", KeptIndex)
     text = (folder / "study.toml").read_bytes()
-    if hashlib.sha256(text).hexdigest() != said["study"]:
+    if hashlib.sha256(text).hexdigest() != index.study:
         raise InputError(f"{folder / 'study.toml'}: is not the study that was run there")
-    return Kept(
-        folder=folder,
-        source=said["source"],
-        files={name: folder / _FOLDER / file for name, file in said["files"].items()},
-        n_cells=said["cells"],
-        n_maps=said["maps"],
-        provenance=said["provenance"],
-    )
+    return index
 
 
-def read_result(kept: Kept, study: Study) -> StudyResult:
+def files_of(folder: Path, index: KeptIndex) -> dict[str, Path]:
+    """Return where the files are that the study names, by the names that it gives them."""
+    return {name: folder / _FOLDER / Path(file).name for name, file in index.files.items()}
+
+
+def read_result(folder: Path, index: KeptIndex, study: Study) -> StudyResult:
     """Return the result that `keep_result` has written, bit by bit.
 
     Parameters
     ----------
-    kept : Kept
-        What the folder says of itself.
+    folder : Path
+        The results folder.
+    index : KeptIndex
+        What it says of itself.
     study : Study
         The study in the folder, read again.
     """
-    cells = [_read(kept.folder, f"cell{i:04d}") for i in range(kept.n_cells)]
+    cells = [_read(folder, f"cell{i:04d}", _CELL) for i in range(index.cells)]
     return StudyResult(
         study=study,
         cells={cell.key: cell for cell, _ in cells},
         verdicts={cell.key: verdicts for cell, verdicts in cells if verdicts is not None},
-        maps=dict(_read(kept.folder, f"map{i:04d}") for i in range(kept.n_maps)),
-        modes=_read(kept.folder, "index")["modes"],
-        provenance=kept.provenance,
+        maps=dict(_read(folder, f"map{i:04d}", _MAP) for i in range(index.maps)),
+        modes=index.modes,
+        provenance=index.provenance,
     )
 
 
-def _read(folder: Path, name: str) -> Any:  # noqa: ANN401 - whatever was kept
+def _read(folder: Path, name: str, hint: Any) -> Any:  # noqa: ANN401 - whatever was kept
+    """Return a value that was kept, if it is of the kind that it should be."""
     file = folder / _FOLDER / name
     value = kept_value(file, _LABEL)
-    if value is None:
+    if value is None or not holds(value, hint):
         raise InputError(f"{file}: is not as trundle wrote it; run the study again")
     return value

@@ -1,0 +1,39 @@
+"""Hold what a results folder says of what is kept in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from trundle.results.modes import FirstModes
+
+__all__ = ["KeptIndex"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class KeptIndex:
+    """Hold what stands in the first of the files that are kept.
+
+    Attributes
+    ----------
+    source : str
+        Where the study file stood.
+    study : str
+        SHA-256 of its text.
+    files : mapping of str to str
+        Names of the files that it names, here, by the names that it gives them.
+    cells, maps : int
+        How many are kept.
+    modes : FirstModes or None
+        Natural modes of the floor, where a method used them.
+    provenance : mapping of str
+        Where the results come from.
+    """
+
+    source: str
+    study: str
+    files: Mapping[str, str]
+    cells: int
+    maps: int
+    modes: FirstModes | None
+    provenance: Mapping[str, str | int | Mapping[str, str]]

@@ -63,6 +63,12 @@ def test_a_result_is_read_back_bit_by_bit(done, tmp_path):
         assert content == (out / path).read_bytes(), path
 
 
+def test_who_may_read_the_report_may_read_what_is_kept(done):
+    _, _, out = done
+    modes = {path.stat().st_mode for path in (out / "kept").iterdir()}
+    assert modes == {(out / "report.html").stat().st_mode}
+
+
 def test_what_is_saved_again_is_the_same_folder(done, tmp_path):
     _, _, out = done
     tr.save(tr.read_results(out), tmp_path / "copy")

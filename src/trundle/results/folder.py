@@ -61,6 +61,9 @@ def keep_result(result: StudyResult, folder: Path) -> None:
         provenance=result.provenance,
     )
     keep_value(kept / "index", index, _LABEL)
+    mode = (folder / "study.toml").stat().st_mode
+    for file in kept.iterdir():  # written aside for the writer alone; results are for whom they say
+        file.chmod(mode)
 
 
 def index_of(folder: Path) -> KeptIndex:

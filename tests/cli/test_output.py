@@ -100,3 +100,17 @@ def test_a_record_without_motion_is_not_assessed_and_says_why(tmp_path, record):
     assert code == 0
     assert "not assessed: nothing moves there" in out
     assert " pass " not in out
+
+
+def test_numbers_of_figures_that_are_not_there_are_named(tmp_path):
+    """A slip in a figure's name; the right one stands in the report."""
+    (tmp_path / "study.toml").write_text(
+        STUDY.read_text() + '\n[publication.numbers]\nplan = "Figure 8"\nsektion = "Figure 9"\n'
+    )
+    code, out, _ = trundle("run", "study.toml", "--out", "out", cwd=tmp_path)
+    assert code == 0
+    assert "publication.numbers.sektion: no figure or table" in out
+    assert "numbers.plan" not in out
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert "(Figure 8)" in page
+    assert "Figure 9" not in page.partition("<h3>Study file</h3>")[0]

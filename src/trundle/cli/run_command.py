@@ -12,7 +12,7 @@ from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.result_tables import print_result
 from trundle.cli.screen import progress_bar
 from trundle.cli.show import Show, say_json, warn
-from trundle.report import write_report
+from trundle.report import unused_numbers, write_report
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.results.store import write_results
 from trundle.run.checkpoint import unfinished_of
@@ -69,6 +69,8 @@ def run(
         for warning in found:
             if warning not in told:
                 warn(f"{method}: {warning}", show)
+    for name in unused_numbers(result):
+        warn(f"publication.numbers.{name}: no figure or table of the report has this name", show)
     if show == "tables":
         print(f"\nreport: {report}")
     elif show == "json":

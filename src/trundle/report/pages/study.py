@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,8 +23,9 @@ from trundle.views.tables import exact_rows, summary_headings, summary_rows, tru
 from trundle.views.verdicts import headline, verdict_matrix
 from trundle.views.words import road_words
 
-__all__ = ["write_report"]
+__all__ = ["unused_numbers", "write_report"]
 
+_TABLES = ("classes", "printed", "printed_bound")  # that bear numbers beside the figures
 _FILES = (floor, road, vehicle, response, map)  # in the order of the page
 
 
@@ -40,12 +41,21 @@ def write_report(result: StudyResult, folder: Path, *, tell: Tell | None = None)
     tell : callable, optional
         Told which figure is drawn, and the share drawn.
     """
-    drawings = itertools.chain.from_iterable(file.drawings(result) for file in _FILES)
-    numbered = [_numbered(drawing, result.study.numbering) for drawing in drawings]
+    numbered = [_numbered(drawing, result.study.numbering) for drawing in _drawings(result)]
     pictures = embedded(numbered, folder / "figures", tell=tell or silent)
     page = folder / "report.html"
     page.write_text(_render(result, pictures), encoding="utf-8")
     return page
+
+
+def _drawings(result: StudyResult) -> Iterator[Drawing]:
+    return itertools.chain.from_iterable(file.drawings(result) for file in _FILES)
+
+
+def unused_numbers(result: StudyResult) -> list[str]:
+    """Return the names that a study numbers and that no figure or table of its report has."""
+    known = {drawing.name for drawing in _drawings(result)}.union(_TABLES)
+    return [name for name in result.study.numbering if name not in known]
 
 
 def _numbered(drawing: Drawing, numbering: Mapping[str, str]) -> Drawing:

@@ -64,6 +64,7 @@ class Drawing:
         with rc_context(STYLE):
             figure = self.draw()
             figure.savefig(folder / f"{self.name}.png", dpi=130)
+            figure.set_layout_engine("none")  # laid out once; the second finds it as it is
             figure.savefig(folder / f"{self.name}.svg", metadata={"Date": None})
 
 

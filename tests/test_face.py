@@ -83,12 +83,14 @@ def test_what_is_saved_again_is_the_same_folder(done, tmp_path):
 def test_results_that_were_changed_are_refused_by_name(done, tmp_path, name):
     shutil.copytree(done[2], tmp_path / "out")
     file = tmp_path / "out" / name
-    file.write_bytes(file.read_bytes().replace(b"0", b"1", 1))
-    with pytest.raises(InputError, match=file.name):
+    old, new = (b"seed = 1", b"seed = 2") if name == "study.toml" else (b"0", b"1")
+    file.write_bytes(file.read_bytes().replace(old, new, 1))
+    told = "is not the study that was run" if name == "study.toml" else file.name
+    with pytest.raises(InputError, match=told):
         tr.read_results(tmp_path / "out")
     (tmp_path / "out" / ".trundle-results").unlink()  # as an archive may leave it
     if name != "kept/file00.toml":
-        with pytest.raises(InputError, match=file.name):
+        with pytest.raises(InputError, match=told):
             tr.read_results(tmp_path / "out")
 
 

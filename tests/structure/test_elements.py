@@ -295,3 +295,24 @@ def test_the_mass_of_a_shell_is_consistent():
         np.testing.assert_allclose(
             block[dof, dof::6], total * np.array([4.0, 2.0, 1.0, 2.0]) / 36.0, rtol=1e-9
         )
+
+
+def test_a_node_moves_in_what_its_elements_carry_alone():
+    """Of a node on a spring that is stiff upright alone there is one dof, and none is singular."""
+    steel = Material(elastic_modulus=2e11, poisson_ratio=0.3, density=7800.0)
+    section = BeamSection(
+        area=1e-2, inertia_y=1e-5, inertia_z=1e-5, torsion_constant=1e-5,
+        shear_area_y=np.inf, shear_area_z=np.inf, material=steel,
+    )  # fmt: skip
+    fixed = np.zeros((3, 6), dtype=bool)
+    fixed[0] = True
+    upright = np.array([0.0, 0.0, 1e6, 0.0, 0.0, 0.0])
+    floor = Floor(
+        nodes=np.array([[0.0, 0, 0], [2.0, 0, 0], [2.0, 0, -1.0]]),
+        fixed=fixed,
+        beams=(BeamGroup(elements=np.array([[0, 1]]), section=section),),
+        springs=(SpringGroup(elements=np.array([[1, 2]]), stiffness=upright),),
+    )
+    assert (floor.dof_index[2] >= 0).tolist() == [False, False, True, False, False, False]
+    assert floor.n_dofs == 6 + 1
+    assert np.linalg.matrix_rank(floor.stiffness.toarray()) == floor.n_dofs

@@ -3,9 +3,9 @@
 Usage: python scripts/combine_studies.py [--first N] [--count N]
 
 Seeded random studies of a small floor: edges, vehicles, routes and speeds, traffic, roads, waves,
-points and isolators, methods of every kind, criteria, maps. Each is built, run, stored, reported
-and printed. A fault is a traceback, a raw warning, or a refusal after the work has begun. Exit
-code 0 if there is none.
+points and isolators, methods of every kind, criteria, maps. Each is built, run, stored, reported,
+read back, reported again and printed. A fault is a traceback, a raw warning, a refusal after the
+work has begun, or another report from what was read back. Exit code 0 if there is none.
 """
 
 from __future__ import annotations
@@ -23,13 +23,9 @@ from pathlib import Path
 
 from study_texts import RAYLEIGH, SMALL
 
+from trundle import load_study, read_results, run_study, save, write_report
 from trundle.cli.result_tables import print_result
 from trundle.errors import StudyError, TrundleError
-from trundle.report import write_report
-from trundle.results.results_folder import new_results_folder
-from trundle.results.store import write_results
-from trundle.run.whole_study import run_study
-from trundle.study_file.build import load_study
 
 RATIO = '{ ratio = "3 %" }'
 PLANAR = """
@@ -149,9 +145,11 @@ def outcome(text: str, folder: Path) -> str:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             result = run_study(load_study(path))
-            with new_results_folder(folder / "out") as out:
-                write_results(result, out)
-                write_report(result, out)
+            page = save(result, folder / "out").read_bytes()
+            with tempfile.TemporaryDirectory(dir=folder) as empty:
+                again = write_report(read_results(folder / "out"), Path(empty)).read_bytes()
+            if again != page:
+                return "what is read back gives another report"
             with contextlib.redirect_stdout(io.StringIO()):
                 print_result(result)
     except StudyError:

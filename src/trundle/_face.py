@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from trundle._kinds import kinds_checked
-from trundle._progress import Tell
+from trundle._progress import Tell, silent
 from trundle.criteria import Criterion, all_criteria
 from trundle.mitigate import Change, Sweep
 from trundle.mitigate import try_changes as _try_changes
@@ -37,6 +37,7 @@ def run_study(
     *,
     tell: Tell | None = None,
     executor: Executor | None = None,
+    fresh: bool = False,
 ) -> StudyResult:
     """Run every case of a study on every road by every method.
 
@@ -51,6 +52,8 @@ def run_study(
         Told what is being done, and the share done.
     executor : Executor, optional
         Who computes, such as the workers of `trundle.run.local_cluster`; this process unless given.
+    fresh : bool
+        Begin anew: leave aside what a stopped run has finished.
 
     Returns
     -------
@@ -64,15 +67,24 @@ def run_study(
     """
     if out is None:
         return _run_study(study, tell=tell, executor=executor)
-    check_target(Path(out))
-    with unfinished_of(study, Path(out)) as store:
-        result = _run_study(study, tell=tell, store=store, executor=executor)
-        save(result, out)
+    told, out = tell or silent, Path(out)
+    check_target(out)
+    with unfinished_of(study, out, fresh=fresh) as store:
+        if store.n_found:
+            told(f"going on from {store.n_found} finished pieces of an earlier run", 0.0)
+        result = _run_study(
+            study,
+            tell=lambda what, share: told(what, 0.94 * share),
+            store=store,
+            executor=executor,
+        )
+        with new_results_folder(out, within=store.folder) as aside:
+            _write(result, aside, lambda what, share: told(what, 0.94 + 0.06 * share))
     return result
 
 
 @kinds_checked
-def save(result: StudyResult, folder: Path | str) -> Path:
+def save(result: StudyResult, folder: Path | str, *, tell: Tell | None = None) -> Path:
     """Write results and report into a folder, aside and then in place; return the report's page.
 
     Earlier results of a study there are replaced; anything else is refused.
@@ -83,15 +95,23 @@ def save(result: StudyResult, folder: Path | str) -> Path:
         A result, computed or read.
     folder : path-like
         Results folder.
+    tell : callable, optional
+        Told which figure is drawn, and the share drawn.
     """
-    from trundle.report import write_report  # noqa: PLC0415 - pictures take a second to import
-
     folder = Path(folder)
     check_target(folder)
     with new_results_folder(folder) as aside:
-        write_results(result, aside)
-        write_report(result, aside)
+        _write(result, aside, tell or silent)
     return folder / "report.html"
+
+
+def _write(result: StudyResult, folder: Path, tell: Tell) -> None:
+    """Write everything into a new folder."""
+    from trundle.report import write_report  # noqa: PLC0415 - pictures take a second to import
+
+    tell("writing results", 0.0)
+    write_results(result, folder)
+    write_report(result, folder, tell=tell)
 
 
 @kinds_checked

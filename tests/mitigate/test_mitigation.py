@@ -257,3 +257,10 @@ def test_workers_try_changes_to_the_same_bits(tmp_path):
         there = try_changes(study, **asked, executor=cluster)
     for one, other in zip(here.outcomes, there.outcomes, strict=True):
         assert [v.margin for v in one.verdicts] == [v.margin for v in other.verdicts]
+
+
+@pytest.mark.parametrize("nothing", [{"changes": []}, {"speeds": []}, {"roads": []}, {"runs": 0}])
+def test_nothing_to_try_is_refused(tmp_path, nothing):
+    asked = {"changes": [Change()], "speeds": (15 * KMH,), "roads": ("B",), "runs": 2} | nothing
+    with pytest.raises(InputError, match="at least one"):
+        try_changes(study_of(tmp_path), **asked)

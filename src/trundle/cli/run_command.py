@@ -6,18 +6,16 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+from trundle._face import run_study
 from trundle.cli.afford import check_affordable
 from trundle.cli.executors import check_executor, executor_of
 from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.result_tables import print_result
 from trundle.cli.screen import progress_bar
 from trundle.cli.show import Show, say_json, warn
-from trundle.report import unused_numbers, write_report
-from trundle.results.results_folder import check_target, new_results_folder
-from trundle.results.store import write_results
-from trundle.run.checkpoint import unfinished_of
+from trundle.report import unused_numbers
+from trundle.results.results_folder import check_target
 from trundle.run.estimate import estimate_of
-from trundle.run.whole_study import run_study
 from trundle.study.doubts import study_doubts
 from trundle.study_file.build import load_study
 
@@ -46,22 +44,10 @@ def run(
     check_affordable(str(path), estimate_of(study), yes=yes)
     place = out.resolve()
     with (
-        unfinished_of(study, out, fresh=fresh) as store,
         executor_of(workers, scheduler) as executor,
         progress_bar(quiet=show == "nothing") as tell,
-        new_results_folder(out, within=store.folder) as folder,
     ):
-        if store.n_found:
-            tell(f"going on from {store.n_found} finished pieces of an earlier run", 0.0)
-        result = run_study(
-            study,
-            tell=lambda what, share: tell(what, 0.94 * share),
-            store=store,
-            executor=executor,
-        )
-        tell("writing results", 0.94)
-        write_results(result, folder)
-        write_report(result, folder, tell=lambda what, share: tell(what, 0.95 + 0.05 * share))
+        result = run_study(study, out, tell=tell, executor=executor, fresh=fresh)
     report = place / "report.html"
     if show == "tables":
         print_result(result)

@@ -73,6 +73,8 @@ def try_changes(
     """
     check_changes(study, changes)
     check_speeds(study, speeds)
+    if not roads or runs < 1:
+        raise InputError(f"give at least one road class and one run; got {roads!r} and {runs}")
     tell = tell or silent
     store = store if store is not None else InMemory()
     planned = plan_changes(study, changes=changes, speeds=speeds, roads=roads, runs=runs)
@@ -107,7 +109,9 @@ def try_changes(
 
 
 def check_changes(study: Study, changes: Sequence[Change]) -> None:
-    """Refuse a study without criteria, and changes of one name."""
+    """Refuse a study without criteria, no change, and changes of one name."""
+    if not changes:
+        raise InputError("give at least one change; Change() is the study as it is")
     if study.assessment is None:
         raise InputError(f"{study.source}: has no [criteria] to hold changes against; add them")
     for label, times in Counter(change.label for change in changes).items():
@@ -117,6 +121,8 @@ def check_changes(study: Study, changes: Sequence[Change]) -> None:
 
 def check_speeds(study: Study, speeds: Sequence[float]) -> None:
     """Refuse speeds at which a crossing takes next to no steps, or endlessly many [m/s]."""
+    if not speeds:
+        raise InputError("give at least one speed [m/s]")
     dt = min(method.interaction.integration.dt for method in study.methods)
     longest = max(drive.route.length + drive.vehicle.length for drive in study.drives.values())
     for speed in speeds:

@@ -179,7 +179,7 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
             colour = COLOURS[number % len(COLOURS)]
             axes.plot([x, x], [low, high], color=colour, linewidth=5.0, alpha=0.35)
             axes.plot([x], [middle], marker="o", color=colour)
-            labels.append(f"{case.name}\n{road}")
+            labels.append(f"{case.name}, {road}")
     criteria = result.study.assessment.criteria if result.study.assessment else ()
     for criterion in criteria:
         if criterion.quantity == "peak_acceleration" and criterion.axis != "horizontal":
@@ -197,7 +197,9 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
             )
     make_logarithmic(axes, "y")
     axes.set(ylabel="peak acceleration, 0-peak [gal]")
-    axes.set_xticks(range(len(labels)), labels, fontsize=8)
+    axes.set_xticks(
+        range(len(labels)), labels, fontsize=8, rotation=35, ha="right", rotation_mode="anchor"
+    )
     axes.set_title(f"{point}, method {method!r}: median and 5-95 % of the runs", fontsize=9)
     return figure
 

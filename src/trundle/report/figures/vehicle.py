@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from trundle._typing import Array
 from trundle.dynamics import Modal
 from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.results.study_result import StudyResult
@@ -20,6 +21,8 @@ from trundle.vehicle import GRAVITY, Vehicle
 
 __all__ = ["drawings"]
 
+_LABEL = 0.18  # of a vehicle's length: the width of an axle's label in its picture
+_ROW = 1.7  # height of a row of labels there
 _MOST_STEPS = 50_000  # drawn: of a very stiff vehicle the beginning
 
 
@@ -65,8 +68,10 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
 
 def vehicle_figure(vehicle: Vehicle) -> Figure:
     """Draw contacts, springs and static loads of a vehicle."""
-    figure, (axes,) = new_figure(7.2, 2.8)
     length = max(vehicle.length, 1.0)
+    rows = _label_rows(vehicle.setback, _LABEL * length)
+    low = -1.9 - _ROW * max(rows)
+    figure, (axes,) = new_figure(7.2, 2.8 * (2.8 - low) / 4.7)
     axes.add_patch(_box(-0.06 * length, 1.2, 1.12 * length, 1.0))
     axes.text(
         0.5 * length,
@@ -83,7 +88,7 @@ def vehicle_figure(vehicle: Vehicle) -> Figure:
             f"k = {vehicle.contact_stiffness[i] / 1e6:.3g} MN/m\n"
             f"c = {vehicle.contact_damping[i] / 1e3:.3g} kN s/m"
         )
-        axes.text(place, -0.25, text, ha="center", va="top", fontsize=8)
+        axes.text(place, -0.25 - _ROW * rows[i], text, ha="center", va="top", fontsize=8)
     axes.axhline(0.0, color="black", linewidth=1.0)
     axes.annotate(
         "direction of travel",
@@ -94,13 +99,24 @@ def vehicle_figure(vehicle: Vehicle) -> Figure:
     )
     axes.set(
         xlim=(-0.18 * length, 1.18 * length),
-        ylim=(-1.9, 2.8),
+        ylim=(low, 2.8),
         xlabel="distance behind the front axle [m]",
         yticks=[],
     )
     axes.grid(visible=False)
     axes.spines["left"].set_visible(False)
     return figure
+
+
+def _label_rows(places: Array, width: float) -> list[int]:
+    """Return in which row the label at each place stands, so that none covers another."""
+    rows: list[int] = []
+    ends: list[float] = []  # of the last label in each row
+    for place in places:
+        row = next((i for i, end in enumerate(ends) if place - end >= width), len(ends))
+        ends[row : row + 1] = [float(place)]
+        rows.append(row)
+    return rows
 
 
 def _box(x: float, y: float, width: float, height: float) -> Rectangle:
@@ -143,7 +159,7 @@ def axle_forces_figure(
     duration: float = 25.0,
 ) -> Figure:
     """Draw the dynamic axle forces of one run at several speeds [m/s]."""
-    figure, axes = new_figure(7.2, 1.9 * len(speeds), rows=len(speeds), share="xy")
+    figure, axes = new_figure(7.2, 1.9 * len(speeds) + 0.3, rows=len(speeds), share="xy")
     for panel, speed in zip(axes, speeds, strict=True):
         route = Route.straight((0.0, 0.0), (1.0, 0.0), speed=speed, name="force")
         crossing = Crossing(
@@ -159,11 +175,10 @@ def axle_forces_figure(
         )
         for i in reversed(range(vehicle.n_contacts)):
             dynamic = (forces[0, :, i] - vehicle.static_forces[i]) / GRAVITY / 1e3
-            panel.plot(
-                time, dynamic, color=COLOURS[i], linewidth=0.8, label=vehicle.contact_names[i]
-            )
+            colour = COLOURS[i % len(COLOURS)]
+            panel.plot(time, dynamic, color=colour, linewidth=0.8, label=vehicle.contact_names[i])
         panel.set(ylabel="force [t]", title=f"{3.6 * speed:.0f} km/h, {road}", xlim=(0.0, duration))
     handles, labels = axes[0].get_legend_handles_labels()
-    axes[0].legend(handles[::-1], labels[::-1], ncols=3, loc="upper right")
+    figure.legend(handles[::-1], labels[::-1], ncols=6, loc="outside lower center")
     axes[-1].set_xlabel("time [s]")
     return figure

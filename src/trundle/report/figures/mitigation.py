@@ -83,7 +83,7 @@ def class_matrix_figure(sweep: Sweep, point: str) -> Figure:
         _matrix(panel, rows, names, (sweep.changes, speeds))
         panel.set_title(f"{case}, class {road}", fontsize=8)
     axes[0].invert_yaxis()  # all panels share it
-    _label(axes, len(sweep.roads), "speed [km/h]", "")
+    figure.supxlabel("speed [km/h]", fontsize=9)  # one for all: panels of few speeds are narrow
     return figure
 
 

@@ -17,7 +17,7 @@ import numpy as np
 import trundle as tr
 from trundle.dynamics import available_backends
 from trundle.road import Profile
-from trundle.route import Hat, Ramp, Route
+from trundle.route import Ramp, Route
 from trundle.simulate import (
     Coupled,
     Crossing,
@@ -29,6 +29,7 @@ from trundle.simulate import (
     prepare,
 )
 from trundle.simulate.wheels.roads import roads_under_wheels
+from trundle.structure import Hat
 from trundle.vehicle import sprung_mass
 
 STEPS = 400

@@ -9,8 +9,9 @@ from models import small_floor
 from trundle.errors import InputError
 from trundle.response import percentile_rank, upper_bounds
 from trundle.road import Profile, RoadClass
-from trundle.route import Hat, Hermite, contact_rows
+from trundle.route import contact_rows
 from trundle.signals import averaged_rms
+from trundle.structure import Hat, Hermite
 from trundle.units import to_si
 
 FLOOR = small_floor(column=None, beams_x=None, beams_y=None)

@@ -9,16 +9,13 @@ from trundle.route import (
     Abrupt,
     ConstantSpeed,
     DriveIn,
-    Hat,
-    Hermite,
     Ramp,
     Route,
     StaticStart,
     SteadyAcceleration,
     contact_rows,
-    deck_of,
 )
-from trundle.structure import CONCRETE, Floor, ShellGroup, ShellSection
+from trundle.structure import CONCRETE, Floor, Hat, Hermite, ShellGroup, ShellSection
 
 ALONG_X = np.array([[1.0, 0.0]])
 
@@ -56,7 +53,7 @@ def field(floor: Floor, w, wx, wy) -> np.ndarray:
 def test_a_plane_is_reproduced_everywhere(make, shape):
     """Rigid-body motions are exact: a load keeps its size and both its moments."""
     floor = make()
-    low, high = deck_of(floor).extent
+    low, high = floor.surface().extent
     rng = np.random.default_rng(1)
     inside = low + (high - low) * rng.uniform(0.3, 0.7, (50, 2))
     u = field(floor, lambda x, y: 2 + 3 * x - 4 * y, lambda x, y: 3.0, lambda x, y: -4.0)

@@ -12,7 +12,7 @@ from models import simple_beam, small_floor
 from trundle.dynamics import sparse_solver
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
-from trundle.route import DriveIn, Hat, Hermite, Ramp, Route, StaticStart, contact_rows
+from trundle.route import DriveIn, Ramp, Route, StaticStart, contact_rows
 from trundle.simulate import (
     Coupled,
     Crossing,
@@ -26,6 +26,7 @@ from trundle.simulate import (
 )
 from trundle.simulate.wheels.roads import _Source, roads_under_wheels
 from trundle.simulate.wheels.timeline import operator_rows, timeline_of
+from trundle.structure import Hat, Hermite
 from trundle.vehicle import container_truck_40ft, library_vehicle, quarter_car
 
 DAMPING = Rayleigh(alpha=0.5, beta=0.001)

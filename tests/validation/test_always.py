@@ -22,7 +22,7 @@ from trundle.dynamics import (
     restoring_filter,
 )
 from trundle.road import Profile
-from trundle.route import DriveIn, Hermite, Route
+from trundle.route import DriveIn, Route
 from trundle.simulate import Coupled, Crossing, ensemble, prepare
 from trundle.simulate.direct import march
 from trundle.simulate.direct.floors import FullFloor
@@ -32,6 +32,7 @@ from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.point_motion import complete, point_filters
 from trundle.simulate.wheels.roads import drawn_roads, roads_under_wheels
 from trundle.simulate.wheels.timeline import operator_rows, timeline_of
+from trundle.structure import Hermite
 from trundle.vehicle import container_truck_40ft, quarter_car
 
 CASE = "Always"

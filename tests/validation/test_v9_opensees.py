@@ -13,11 +13,12 @@ import pytest
 
 from trundle.dynamics import natural_modes
 from trundle.road import Profile
-from trundle.route import Hat, Ramp, Route
+from trundle.route import Ramp, Route
 from trundle.simulate import Crossing, Decoupled, Newmark, Rayleigh, ensemble
 from trundle.structure import (
     CONCRETE,
     FloorPlan,
+    Hat,
     PointMasses,
     Rectangle,
     ShellSection,

@@ -12,7 +12,8 @@ from trundle._kinds import kinds_checked
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
-from trundle.route import ContactShape, DriveIn, Entry, Hermite, Route, StaticStart
+from trundle.route import DriveIn, Entry, Route, StaticStart
+from trundle.structure import ContactShape, Hermite
 from trundle.vehicle import Vehicle
 
 __all__ = ["TAIL", "Coupled", "Crossing", "Decoupled", "Integration", "Interaction"]

@@ -8,7 +8,6 @@ from trundle._words import in_kmh
 from trundle.dynamics import TOP, Modal, Modes, Newmark, Rayleigh
 from trundle.errors import FitnessWarning
 from trundle.road import FITTED_RANGE, RoadClass
-from trundle.route import Hat
 from trundle.signals import TOP_FREQUENCY
 from trundle.simulate.crossing import Crossing, Integration, Interaction
 from trundle.simulate.vehicle_fitness import axle_hop_warnings
@@ -53,7 +52,7 @@ def fitness_warnings(
         *axle_hop_warnings(crossings),
         *(warning for crossing in crossings for warning in _extrapolation(crossing)),
     ]
-    if isinstance(method.contact, Hat):
+    if method.contact.kinks:
         found += [w for crossing in crossings for w in _mesh_passing(crossing, floor, modes)]
     return tuple(dict.fromkeys(found))
 

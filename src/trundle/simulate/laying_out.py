@@ -15,7 +15,7 @@ from trundle.dynamics import (
     ModalRecursion,
 )
 from trundle.errors import InputError
-from trundle.route import ContactRows, Hermite, contact_rows
+from trundle.route import ContactRows, contact_rows
 from trundle.simulate.crossing import TAIL, Coupled, Crossing, Decoupled, Integration, Interaction
 from trundle.simulate.direct.floors import FullFloor
 from trundle.simulate.fitness import fitness_warnings
@@ -28,7 +28,7 @@ from trundle.simulate.prepared import PreparedFloor, prepare
 from trundle.simulate.step_limits import check_contact_loop, step_problem
 from trundle.simulate.wheels.given_road import given_road_doubts
 from trundle.simulate.wheels.timeline import Timeline, operator_rows, timeline_of
-from trundle.structure import Floor
+from trundle.structure import Floor, Hermite
 
 __all__ = ["lay_out", "lay_out_on_rigid_ground"]
 

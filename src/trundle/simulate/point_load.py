@@ -9,8 +9,8 @@ import numpy as np
 from trundle._checks import finite
 from trundle._kinds import kinds_checked
 from trundle.dynamics import factorise
-from trundle.route import Hermite, contact_rows
-from trundle.structure import Floor
+from trundle.route import contact_rows
+from trundle.structure import Floor, Hermite
 
 __all__ = ["point_load_deflection"]
 

@@ -3,7 +3,17 @@
 from trundle.structure.arches import arching
 from trundle.structure.bridge import beam_bridge
 from trundle.structure.edges import EDGES, Edge
-from trundle.structure.elements import BeamGroup, Elements, PointMasses, ShellGroup, SpringGroup
+from trundle.structure.elements import (
+    BeamGroup,
+    ContactShape,
+    Elements,
+    Hat,
+    Hermite,
+    PointMasses,
+    ShellGroup,
+    SpringGroup,
+    Standable,
+)
 from trundle.structure.floor import DOF_NAMES, Floor, MirrorPlane
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.reference import reference_plan, reference_unit
@@ -14,6 +24,7 @@ from trundle.structure.resolution import (
 )
 from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
 from trundle.structure.statics import self_weight_deflection
+from trundle.structure.surface import Frame, Spot, Spots, Surface
 
 __all__ = [
     "CONCRETE",
@@ -22,17 +33,25 @@ __all__ = [
     "ELEMENTS_PER_WAVE",
     "BeamGroup",
     "BeamSection",
+    "ContactShape",
     "Edge",
     "Elements",
     "Floor",
     "FloorPlan",
+    "Frame",
+    "Hat",
+    "Hermite",
     "Material",
     "MirrorPlane",
     "PointMasses",
     "Rectangle",
     "ShellGroup",
     "ShellSection",
+    "Spot",
+    "Spots",
     "SpringGroup",
+    "Standable",
+    "Surface",
     "arching",
     "beam_bridge",
     "build_floor",

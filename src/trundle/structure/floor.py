@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -19,6 +20,7 @@ from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Elements
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.spring import SpringGroup
+from trundle.structure.surface import Surface, check_names, found_surface, named_surface
 
 __all__ = ["DOF_NAMES", "Floor", "MirrorPlane"]
 
@@ -60,6 +62,9 @@ class Floor:
         The elements.
     others : tuple of Elements
         Elements of any other kind, see `trundle.structure.elements`.
+    decks : tuple of Surface
+        Surfaces that are driven and stood on; one called ``floor``, of the level shells or of the
+        level beams without any, unless given.
     mirrors : tuple of MirrorPlane
         Planes of symmetry, whose dofs are among those held.
     name : str
@@ -78,6 +83,7 @@ class Floor:
     springs: tuple[SpringGroup, ...] = ()
     masses: tuple[PointMasses, ...] = ()
     others: tuple[Elements, ...] = ()
+    decks: tuple[Surface, ...] = ()
     mirrors: tuple[MirrorPlane, ...] = ()
     name: str = "floor"
 
@@ -90,11 +96,28 @@ class Floor:
             raise InputError("a floor needs at least one group of shells or beams")
         for group in self.elements:
             _check_numbers(group, len(nodes))
+        check_names(self.decks)
 
     @property
     def elements(self) -> tuple[Elements, ...]:
         """All groups of elements."""
         return (*self.shells, *self.beams, *self.springs, *self.masses, *self.others)
+
+    @cached_property
+    def surfaces(self) -> Mapping[str, Surface]:
+        """What is driven and stood on, by name.
+
+        Raises
+        ------
+        InputError
+            None was given, and there is no level element, or there are several heights.
+        """
+        decks = self.decks or (found_surface(self.name, self.nodes, self.elements),)
+        return MappingProxyType({deck.name: deck for deck in decks})
+
+    def surface(self, name: str | None = None) -> Surface:
+        """Return a surface by its name; None for the only one."""
+        return named_surface(self.surfaces, name)
 
     @cached_property
     def dof_index(self) -> Int[Array, "nodes 6"]:

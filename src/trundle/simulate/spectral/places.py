@@ -18,11 +18,12 @@ from scipy import fft, sparse
 from trundle._typing import Array
 from trundle.dynamics import ModalRecursion
 from trundle.errors import InputError
-from trundle.route import ContactRows, Hermite, StaticStart, contact_rows
+from trundle.route import ContactRows, StaticStart, contact_rows
 from trundle.simulate.layout import Layout
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.residual import unit_loads
 from trundle.simulate.prepared import PreparedFloor
+from trundle.structure import Hermite
 
 __all__ = ["PlaceResponses", "lay_out_places"]
 

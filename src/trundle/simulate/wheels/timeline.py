@@ -10,9 +10,9 @@ from jaxtyping import Float, Int
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.route import ContactRows, ContactShape, Hermite, StaticStart, contact_rows, deck_of
+from trundle.route import ContactRows, StaticStart, contact_rows
 from trundle.simulate.crossing import Crossing
-from trundle.structure import Floor
+from trundle.structure import ContactShape, Floor, Hermite
 
 __all__ = [
     "Timeline",
@@ -105,12 +105,12 @@ def contact_springs(crossings: tuple[Crossing, ...]) -> tuple[Array, Array]:
 
 def route_dofs(floor: Floor, crossings: tuple[Crossing, ...]) -> Int[Array, " dofs"]:
     """Return the dofs that wheels load on their way over a floor, rising."""
-    deck, found = deck_of(floor), []
+    found = []
     for crossing in crossings:
         station = np.linspace(0.0, crossing.route.length, 50 * int(crossing.route.length) + 2)
         for lateral in np.unique(crossing.vehicle.lateral):
             places, directions = crossing.route.locate(station, lateral)
-            rows = contact_rows(floor, places, directions, shape=Hermite(), deck=deck)
+            rows = contact_rows(floor, places, directions, shape=Hermite())
             found.append(rows.used_dofs())
     return np.unique(np.concatenate(found))
 
@@ -125,7 +125,6 @@ def operator_rows(
     ContactRows
         ``n_steps + 1`` times ``n_contacts`` rows, contact running fastest.
     """
-    deck = deck_of(floor)
     station = timeline.station[timeline.n_run_in :]
     places = np.empty((*station.shape, 2))
     directions = np.empty((*station.shape, 2))
@@ -137,7 +136,5 @@ def operator_rows(
             places[:, at], directions[:, at] = route.locate(station[:, at], lateral)
             share[:, at], share_slope[:, at] = crossing.entry.share(station[:, at], route.length)
             at += 1
-    rows = contact_rows(
-        floor, places.reshape(-1, 2), directions.reshape(-1, 2), shape=shape, deck=deck
-    )
+    rows = contact_rows(floor, places.reshape(-1, 2), directions.reshape(-1, 2), shape=shape)
     return rows.scaled(share.ravel(), share_slope.ravel())

@@ -19,6 +19,13 @@ from jaxtyping import Bool, Float, Int
 
 from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array
+from trundle.structure.elements.standing import (
+    ContactShape,
+    Located,
+    Weights,
+    line_locate,
+    line_weights,
+)
 from trundle.structure.frames import beam_frames, rotate_blocks
 from trundle.structure.sections import BeamSection
 
@@ -228,3 +235,13 @@ class BeamGroup:
     def mass_blocks(self, xyz: Float[Array, "elements 2 3"]) -> Float[Array, "elements dofs dofs"]:
         """Return the mass of each element, see `beam_mass`."""
         return beam_mass(xyz, self.section, offset=self.offset, up=self.up)
+
+    def locate(self, corners: Float[Array, "n 2 2"], places: Float[Array, "n 2"]) -> Located:
+        """Return where along members places lie, see `line_locate`."""
+        return line_locate(corners, places)
+
+    def weights(
+        self, local: Float[Array, "n 2"], corners: Float[Array, "n 2 2"], shape: ContactShape
+    ) -> Weights:
+        """Return what the nodes' motion gives at places, see `line_weights`."""
+        return line_weights(local, corners, shape)

@@ -7,8 +7,9 @@ from typing import Protocol, runtime_checkable
 from jaxtyping import Bool, Float, Int
 
 from trundle._typing import Array
+from trundle.structure.elements.standing import ContactShape, Located, Weights
 
-__all__ = ["GROUND", "Elements"]
+__all__ = ["GROUND", "Elements", "Standable"]
 
 GROUND = -1
 """Node number that stands for rigid ground."""
@@ -51,4 +52,19 @@ class Elements(Protocol):
         self, xyz: Float[Array, "elements nodes 3"]
     ) -> Float[Array, "elements dofs dofs"] | None:
         """Return the consistent mass of each element [kg], or None; `xyz` are its nodes [m]."""
+        ...
+
+
+@runtime_checkable
+class Standable(Elements, Protocol):
+    """Elements that wheels and points can stand on: they know places between their nodes."""
+
+    def locate(self, corners: Float[Array, "n nodes 2"], places: Float[Array, "n 2"]) -> Located:
+        """Return where in elements places lie; both in the plane of a surface [m]."""
+        ...
+
+    def weights(
+        self, local: Float[Array, "n 2"], corners: Float[Array, "n nodes 2"], shape: ContactShape
+    ) -> Weights:
+        """Return what the nodes' motion gives at places: deflection and its gradient."""
         ...

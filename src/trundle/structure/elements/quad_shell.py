@@ -22,14 +22,19 @@ from jaxtyping import Bool, Float, Int
 from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.structure.elements.standing import (
+    ETA,
+    XI,
+    ContactShape,
+    Located,
+    Weights,
+    quad_locate,
+    quad_weights,
+)
 from trundle.structure.frames import rotate_blocks, shell_frames
 from trundle.structure.sections import ShellSection
 
-__all__ = ["ETA", "XI", "ShellGroup", "shell_mass", "shell_stiffness"]
-
-XI = np.array([-1.0, 1.0, 1.0, -1.0])
-ETA = np.array([-1.0, -1.0, 1.0, 1.0])
-"""Corners of a quadrilateral in its own coordinates, in order round it."""
+__all__ = ["ShellGroup", "shell_mass", "shell_stiffness"]
 
 _GAUSS = 1.0 / np.sqrt(3.0)
 _SHEAR_CORRECTION = 5.0 / 6.0
@@ -293,3 +298,13 @@ class ShellGroup:
     def mass_blocks(self, xyz: Float[Array, "elements 4 3"]) -> Float[Array, "elements dofs dofs"]:
         """Return the mass of each element, see `shell_mass`."""
         return shell_mass(xyz, self.section)
+
+    def locate(self, corners: Float[Array, "n 4 2"], places: Float[Array, "n 2"]) -> Located:
+        """Return where in elements places lie, see `quad_locate`."""
+        return quad_locate(corners, places)
+
+    def weights(
+        self, local: Float[Array, "n 2"], corners: Float[Array, "n 4 2"], shape: ContactShape
+    ) -> Weights:
+        """Return what the nodes' motion gives at places, see `quad_weights`."""
+        return quad_weights(local, corners, shape)

@@ -9,9 +9,10 @@ from typing import Any, Literal
 from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
-from trundle.route import Hat, Hermite, entry_named
+from trundle.route import entry_named
 from trundle.simulate import Coupled, Decoupled, Integration
 from trundle.simulate.step_limits import longest_step, step_problem
+from trundle.structure import Hat, Hermite
 from trundle.study.model import Drive, MethodPlan
 from trundle.study_file.attempt import attempt
 from trundle.study_file.document import StudyFile

@@ -19,8 +19,9 @@ import numpy as np
 from settings import dgemm_rate, rear_layout
 from threadpoolctl import ThreadpoolController
 
+from trundle.dynamics import ExactRecursion
 from trundle.simulate.ensembles import batch_size
-from trundle.simulate.layout import springs_of
+from trundle.simulate.modal.block_march import drive_in_blocks
 from trundle.simulate.wheels.roads import roads_under_wheels
 
 MODES, STEPS, RUNS, DT = 1000, 4000, 1000, 0.005
@@ -41,14 +42,15 @@ def kernel(layout) -> tuple[float, float]:
 
 def numpy_steps(layout, road):
     """Step all runs in plain numpy; return accelerations at the point, and seconds a step."""
-    springs, floor = springs_of(layout.crossings), layout.floor
-    vehicle, e, modal = layout.steps_of(layout.crossings), springs.contact_map, floor.propagator
+    contacts, floor = layout.wheels.contacts, layout.ground.floor
+    springs, modal = contacts.springs, floor.propagator
+    vehicle, e = ExactRecursion(contacts.standing, DT), springs.contact_map
     felt = np.hstack([springs.stiffness * e, springs.damping * e])
     start_v, end_v = vehicle.from_start @ e.T, vehicle.from_end @ e.T
     left = np.eye(len(e)) - felt @ end_v  # of a push at the held vehicle
     phi = modal.phi[..., None]
     start, end = (g.T[..., None] for g in (modal.from_start, modal.from_end))
-    rigid = replace(layout, floor=None, filters=None).over(road).forces
+    rigid = replace(layout, ground=layout.integration.rigid()).over(road).forces
     z, push = np.zeros((len(vehicle.phi), road.n_runs)), np.zeros((len(e), road.n_runs))
     u, forces = np.zeros((floor.n_modes, road.n_runs)), rigid[0]
     v, load = np.zeros_like(u), floor.loads(0, 1)[0]
@@ -80,7 +82,9 @@ def peer() -> dict[str, float]:
     layout = rear_layout(n_modes=MODES, dt=DT, duration=PEER_STEPS * DT, residual=False)
     road = roads_under_wheels(layout.crossings, layout.timeline, range(RUNS), seed=1)
     theirs, seconds = numpy_steps(layout, road)
-    recorded = replace(layout, filters=None).over(road)  # the peer completes no motion
+    recorded = drive_in_blocks(  # the peer completes no motion
+        layout.wheels, layout.ground.floor, road, weight=np.ones(RUNS), coupled=True
+    )
     ours = recorded.acceleration[1 : PEER_STEPS + 1, 0]
     return {
         "numpy_step_ms": 1e3 * seconds,
@@ -107,13 +111,13 @@ def main() -> None:
     parser.add_argument("--no-numpy", action="store_true", help="leave the peer out")
     options = parser.parse_args()
     layout = rear_layout(n_modes=MODES, dt=DT, duration=STEPS * DT)
-    n_modes = layout.floor.n_modes
+    n_modes = layout.ground.floor.n_modes
     before = dgemm_rate()
     alone, whole = kernel(layout)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6  # of the whole process
     dgemm = 0.5 * (before + dgemm_rate())
     on_floor = np.mean(
-        [layout.floor.loads(i, i + 1).any(axis=(0, 2)).sum() for i in range(0, STEPS, 40)]
+        [layout.ground.floor.loads(i, i + 1).any(axis=(0, 2)).sum() for i in range(0, STEPS, 40)]
     )
     operations = (8 * on_floor + 12) * n_modes * STEPS * RUNS
     found = {

@@ -25,6 +25,7 @@ from trundle.simulate import (
     lay_out_places,
     prepare,
 )
+from trundle.structure import Spots
 
 
 def main() -> None:
@@ -46,7 +47,7 @@ def main() -> None:
     forces, _ = contact_force_histories(layout, runs=range(options.runs), seed=1)
     forces_s = time.perf_counter() - start
     found = {"runs": options.runs, "places": len(places), "forces_s": round(forces_s, 1)}
-    responses = lay_out_places(prepared, layout, places)
+    responses = lay_out_places(prepared, layout, Spots(xy=places))
     for name, averaging, peaks in (
         ("event", "event", False), ("max_1s", "max_1s", False), ("max_1s_and_peaks", "max_1s", True),
     ):  # fmt: skip

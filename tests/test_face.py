@@ -212,8 +212,8 @@ def test_fields_hold_what_their_annotations_say():
     assert fields_hold(MapKey, key | {"speed": 3})
     assert not fields_hold(MapKey, key | {"speed": True})
     assert not fields_hold(MapKey, key | {"speed": "3"})
-    arrays = {"frequencies": np.zeros(3), "shapes": np.zeros((4, 2))}
+    arrays = {"frequencies": np.zeros(3), "vertical": np.zeros((4, 2))}
     assert fields_hold(FirstModes, arrays)
-    assert not fields_hold(FirstModes, arrays | {"shapes": np.zeros(4)})  # an axis is missing
-    assert not fields_hold(FirstModes, arrays | {"shapes": [[0.0]]})
-    assert not fields_hold(FirstModes, arrays | {"shapes": np.array([["x"]])})
+    assert not fields_hold(FirstModes, arrays | {"vertical": np.zeros(4)})  # an axis is missing
+    assert not fields_hold(FirstModes, arrays | {"vertical": [[0.0]]})
+    assert not fields_hold(FirstModes, arrays | {"vertical": np.array([["x"]])})

@@ -27,11 +27,13 @@ _EXAMPLES = {
     "Criterion": 'find_criterion("VC-A"), or VC for the generic curves',
     "Vehicle": 'library_vehicle("container_truck_40ft")',
     "Route": 'Route.straight((0, 15), (24, 15), speed=4, name="main")',
-    "Modal": "Modal(f_max=112, dt=0.005)",
-    "ModalRatio": "ModalRatio(ratio=0.03)",
-    "DriveIn": 'entry_named("abrupt")',
+    "Integration": "Modal(f_max=112, dt=0.005)",
+    "Damping": "ModalRatio(ratio=0.03)",
+    "ContactShape": "Hermite()",
+    "Entry": 'entry_named("abrupt")',
     "Runs": "what ensemble(...) returns",
     "Floor": "what build_floor(...) returns",
+    "Structure": "what build_floor(...) returns",
     "Study": 'load_study("study.toml")',
     "Record": 'read_record("record.csv", RecordOptions())',
 }
@@ -124,7 +126,9 @@ def _fits(value: object, wanted: Any) -> bool | None:
     if numbers or origin.__module__.startswith("scipy"):
         return None  # numbers are checked with their bounds, arrays with their shapes
     if getattr(origin, "_is_protocol", False):
-        return all(hasattr(value, member) for member in dir(origin) if not member.startswith("_"))
+        members = [name for name in dir(origin) if not name.startswith("_")]
+        # what is there is looked at, not called: a property may be long to compute
+        return all(inspect.getattr_static(value, name, None) is not None for name in members)
     if origin is tuple:
         return isinstance(value, list | tuple | np.ndarray) and _as_long(value, wanted)
     if origin in {Mapping, Sequence} and isinstance(value, str):
@@ -151,7 +155,8 @@ def _words(wanted: list[Any]) -> str:
 
 def _name(wanted: Any) -> str:
     origin = typing.get_origin(wanted) or wanted
-    inner = [getattr(a, "__name__", "") for a in typing.get_args(wanted)]
+    inside = [option for part in typing.get_args(wanted) for option in _options(part)]
+    inner = [getattr(option, "__name__", "") for option in inside]
     if issubclass(origin, Mapping):
         return "a mapping of names to places" if "tuple" in inner else "a mapping"
     if issubclass(origin, str):

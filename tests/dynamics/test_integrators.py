@@ -8,11 +8,11 @@ from trundle.dynamics import (
     LinearSystem,
     ModalRatio,
     ModalRecursion,
-    Newmark,
     NewmarkPropagator,
     Rayleigh,
 )
 from trundle.errors import InputError
+from trundle.simulate import Newmark
 
 
 def oscillator(omega: float, ratio: float = 0.0) -> LinearSystem:

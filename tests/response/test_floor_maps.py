@@ -27,7 +27,7 @@ from trundle.simulate import (
     lay_out_places,
     prepare,
 )
-from trundle.structure import build_floor
+from trundle.structure import Spots, build_floor
 from trundle.vehicle import container_truck_40ft, sprung_mass
 
 DURATION, SEED, RUNS = 12.0, 3, 3  # the floor is at rest again: 8 % damping, 6 s after the exit
@@ -68,7 +68,7 @@ def test_a_map_is_what_histories_at_its_places_give(kind):
     settings = {"method": method, "points": points, "duration": DURATION}
     runs = ensemble(prepared, way(), n_runs=RUNS, seed=SEED, **settings)
     layout = lay_out(prepared, way(), **settings)
-    responses = lay_out_places(prepared, layout, nodes, single=False)
+    responses = lay_out_places(prepared, layout, Spots(xy=nodes), single=False)
     forces = np.transpose(runs.contact_forces, (1, 2, 0))
     found = floor_map(responses, forces, f_max=layout.f_max, averaging="event")
     histories = reduce_runs(runs, averaging="event")
@@ -97,7 +97,7 @@ def test_a_map_of_a_floor_that_rings_long_is_what_histories_give():
     settings = {"method": method, "points": points, "duration": DURATION}
     runs = ensemble(prepared, way(), n_runs=2, seed=SEED, **settings)
     layout = lay_out(prepared, way(), **settings)
-    responses = lay_out_places(prepared, layout, nodes, single=False)
+    responses = lay_out_places(prepared, layout, Spots(xy=nodes), single=False)
     forces = np.transpose(runs.contact_forces, (1, 2, 0))
     found = floor_map(responses, forces, f_max=layout.f_max, averaging="event")
     np.testing.assert_allclose(found.rms_velocity, runs.record_rms_velocity(), rtol=0.01)
@@ -111,7 +111,9 @@ def test_single_precision_keeps_four_digits():
     layout = lay_out(prepared, way(), method=method, points=points, duration=DURATION)
     forces = np.random.default_rng(0).standard_normal((len(layout.time), 3, 2)) * 1e4
     one, two = (
-        floor_map(lay_out_places(prepared, layout, nodes, single=kind), forces, f_max=90.0)
+        floor_map(
+            lay_out_places(prepared, layout, Spots(xy=nodes), single=kind), forces, f_max=90.0
+        )
         for kind in (True, False)
     )
     np.testing.assert_allclose(one.band_levels, two.band_levels, rtol=1e-4)
@@ -124,13 +126,13 @@ def test_what_cannot_be_mapped_is_refused():
     prepared = prepared_floor(direct)
     layout = lay_out(prepared, way(), method=direct, **settings)
     with pytest.raises(InputError, match="Modal"):
-        lay_out_places(prepared, layout, places)
+        lay_out_places(prepared, layout, Spots(xy=places))
     car = replace(way(StaticStart(exit_length=1.0)), vehicle=sprung_mass(mass=1e4, stiffness=1e6))
     modal = Coupled(integration=Modal(f_max=112.0, dt=0.005))
     prepared = prepared_floor(modal)
     layout = lay_out(prepared, car, method=modal, **settings)
     with pytest.raises(InputError, match="at rest"):
-        lay_out_places(prepared, layout, places)
+        lay_out_places(prepared, layout, Spots(xy=places))
 
 
 def test_a_floor_of_one_mode_has_the_class_of_its_shape_at_every_node():
@@ -165,7 +167,9 @@ def test_a_floor_of_one_mode_has_the_class_of_its_shape_at_every_node():
     forces = np.transpose(runs.contact_forces, (1, 2, 0))
     forces *= 0.03  # so that the classes from workshop to VC-E all occur
     found = class_map(
-        floor_map(lay_out_places(prepared, layout, nodes), forces, f_max=90.0), VC, f_max=90.0
+        floor_map(lay_out_places(prepared, layout, Spots(xy=nodes)), forces, f_max=90.0),
+        VC,
+        f_max=90.0,
     )
     centre = int(np.abs(nodes - 4.0).sum(axis=1).argmin())
     shape = np.abs(np.sin(np.pi * nodes[:, 0] / a) * np.sin(np.pi * nodes[:, 1] / a))

@@ -9,9 +9,10 @@ import pytest
 
 from models import small_floor
 from studies import spoilt
-from trundle.dynamics import Modes
+from trundle.dynamics import Modes, modes_as_arrays
 from trundle.run import mode_cache
 from trundle.run.mode_cache import modes_of
+from trundle.structure import Floor
 
 NAMES = ("omega", "shapes", "residuals", "f_max")
 
@@ -25,13 +26,13 @@ def folder(tmp_path, monkeypatch):
 @pytest.fixture
 def counted(monkeypatch):
     calls = []
-    original = mode_cache.natural_modes
+    original = Floor.modes
 
-    def counting(*args, **kwargs):
-        calls.append(kwargs["f_max"])
-        return original(*args, **kwargs)
+    def counting(floor, f_max, **kwargs):
+        calls.append(f_max)
+        return original(floor, f_max, **kwargs)
 
-    monkeypatch.setattr(mode_cache, "natural_modes", counting)
+    monkeypatch.setattr(Floor, "modes", counting)
     return calls
 
 
@@ -112,7 +113,7 @@ def test_finite_nonsense_is_not_believed(folder, counted, what):
 
 def write_with_a_right_sum(file, arrays):
     modes = Modes(**{n: arrays[n] for n in NAMES[:3]}, f_max=float(arrays["f_max"]))
-    digest = mode_cache._digest(modes)
+    digest = modes_as_arrays(modes)["digest"].tobytes()
     np.savez(file, **arrays, digest=np.frombuffer(digest, dtype=np.uint8))
 
 

@@ -233,7 +233,7 @@ def test_no_bit_and_no_end_of_a_piece_may_change(tmp_path):
     path, out = tmp_path / "study.toml", tmp_path / "out"
     path.write_text(GOOD)
     with unfinished_of(load_study(path), out) as disk:
-        disk.save("a", FirstModes(frequencies=np.arange(9.0), shapes=np.zeros((1, 1))))
+        disk.save("a", FirstModes(frequencies=np.arange(9.0), vertical=np.zeros((1, 1))))
         file = unfinished_folder(out) / "pieces" / "a.piece"
         data = file.read_bytes()
         for spoiled in spoilt(data):
@@ -249,7 +249,7 @@ def test_a_piece_is_neither_another_s_nor_another_study_s(tmp_path):
     path.write_text(GOOD)
     kept = unfinished_folder(out) / "pieces"
     with pytest.raises(KeyboardInterrupt), unfinished_of(load_study(path), out) as disk:
-        disk.save("a", FirstModes(frequencies=np.arange(3.0), shapes=np.zeros((1, 1))))
+        disk.save("a", FirstModes(frequencies=np.arange(3.0), vertical=np.zeros((1, 1))))
         (kept / "b.piece").write_bytes((kept / "a.piece").read_bytes())
         raise KeyboardInterrupt
     with unfinished_of(load_study(path), out) as disk:
@@ -257,7 +257,7 @@ def test_a_piece_is_neither_another_s_nor_another_study_s(tmp_path):
         foreign = (kept / "a.piece").read_bytes()
     path.write_text(GOOD.replace("seed = 1", "seed = 2"))
     with pytest.raises(KeyboardInterrupt), unfinished_of(load_study(path), out) as disk:
-        disk.save("c", FirstModes(frequencies=np.arange(3.0), shapes=np.zeros((1, 1))))
+        disk.save("c", FirstModes(frequencies=np.arange(3.0), vertical=np.zeros((1, 1))))
         (kept / "a.piece").write_bytes(foreign)
         raise KeyboardInterrupt
     with unfinished_of(load_study(path), out) as disk:
@@ -281,7 +281,7 @@ def test_a_stranger_s_piece_is_not_unpickled(tmp_path):
     study = load_study(path)
     with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
         payload = np.array([Payload(trace)], dtype=object)
-        disk.save("a", FirstModes(frequencies=payload, shapes=np.zeros((1, 1))))
+        disk.save("a", FirstModes(frequencies=payload, vertical=np.zeros((1, 1))))
         raise KeyboardInterrupt
     (file,) = (unfinished_folder(out) / "pieces").iterdir()
     data = file.read_bytes()[32:]
@@ -305,7 +305,7 @@ def test_what_a_study_only_names_is_in_its_fingerprint(tmp_path):
         study = load_study(path)
         with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
             assert disk.n_found == found
-            disk.save("a", FirstModes(frequencies=np.arange(3.0), shapes=np.zeros((1, 1))))
+            disk.save("a", FirstModes(frequencies=np.arange(3.0), vertical=np.zeros((1, 1))))
             raise KeyboardInterrupt
 
 
@@ -357,7 +357,7 @@ def test_a_file_of_two_names_keeps_its_content(tmp_path, where):
     (folder / where).unlink(missing_ok=True)
     os.link(victim, folder / where)
     with unfinished_of(load_study(path), tmp_path / "out") as disk:
-        disk.save("a", FirstModes(frequencies=np.arange(3.0), shapes=np.zeros((1, 1))))
+        disk.save("a", FirstModes(frequencies=np.arange(3.0), vertical=np.zeros((1, 1))))
     assert victim.read_bytes() == b"mine \xff"
     assert not folder.exists()
 
@@ -368,7 +368,7 @@ def test_what_a_user_puts_beside_the_pieces_is_kept(tmp_path, fresh):
     path.write_text(GOOD)
     study, folder = load_study(path), unfinished_folder(out)
     with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
-        disk.save("a", FirstModes(frequencies=np.arange(3.0), shapes=np.zeros((1, 1))))
+        disk.save("a", FirstModes(frequencies=np.arange(3.0), vertical=np.zeros((1, 1))))
         raise KeyboardInterrupt
     for name in ("notes.txt", "pieces/mine.txt"):
         (folder / name).write_text("mine")
@@ -395,7 +395,10 @@ def test_a_file_in_the_place_of_the_pieces_is_named(tmp_path):
 def test_a_full_disk_is_named_and_keeps_what_was_finished(tmp_path, monkeypatch):
     path, out = tmp_path / "study.toml", tmp_path / "out"
     path.write_text(GOOD)
-    study, piece = load_study(path), FirstModes(frequencies=np.arange(3.0), shapes=np.zeros((1, 1)))
+    study, piece = (
+        load_study(path),
+        FirstModes(frequencies=np.arange(3.0), vertical=np.zeros((1, 1))),
+    )
 
     def full(number):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

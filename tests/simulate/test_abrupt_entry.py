@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from models import small_floor
-from trundle.dynamics import Modal, ModalRatio
+from trundle.dynamics import ModalRatio
 from trundle.road import Profile, RoadClass, RoughnessBand
 from trundle.route import Abrupt, DriveIn, Route, entry_named
-from trundle.simulate import Crossing, Decoupled, ensemble
+from trundle.simulate import Crossing, Decoupled, Modal, ensemble
 from trundle.vehicle import container_truck_40ft
 
 METHOD = Decoupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.03))

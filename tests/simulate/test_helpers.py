@@ -4,13 +4,15 @@ import numpy as np
 import pytest
 
 from models import small_floor
-from trundle.dynamics import Modal, Newmark, natural_modes
+from trundle.dynamics import natural_modes
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
 from trundle.route import Abrupt, DriveIn, Ramp, Route, StaticStart, entry_named
 from trundle.simulate import (
     Crossing,
     Decoupled,
+    Modal,
+    Newmark,
     contact_force_histories,
     contact_forces,
     harmonics,

@@ -17,6 +17,7 @@ from trundle.simulate import (
     place_spectra,
     prepare,
 )
+from trundle.structure import Spots
 from trundle.vehicle import container_truck_40ft
 
 module = importlib.import_module("trundle.simulate.spectral.place_spectra")
@@ -33,7 +34,7 @@ def laid_out():
     layout = lay_out(prepared, way, method=method, points={"p": (3.0, 3.0)}, duration=4.0)
     places = np.random.default_rng(2).uniform(0.5, 5.5, (7, 2))
     forces = np.random.default_rng(3).standard_normal((len(layout.time), 3, 5)) * 1e4
-    return lay_out_places(prepared, layout, places, single=False), forces
+    return lay_out_places(prepared, layout, Spots(xy=places), single=False), forces
 
 
 def collected(laid_out, *, acceleration):

@@ -24,7 +24,10 @@ from trundle.structure.elements import Located, Weights
 SECTION = ShellSection(thickness=0.2, material=CONCRETE)
 
 
-def plate(turn=np.eye(3), origin=(0.0, 0.0, 0.0), n=6, size=(6.0, 4.0)):
+LEVEL = np.eye(3)
+
+
+def plate(turn=LEVEL, origin=(0.0, 0.0, 0.0), n=6, size=(6.0, 4.0)):
     """A plate clamped all round, turned in space, with its surface."""
     x, y = np.meshgrid(np.linspace(0.0, size[0], n + 1), np.linspace(0.0, size[1], n + 1))
     flat = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
@@ -83,7 +86,7 @@ def two_storeys():
     """One floor over another, each found by its height."""
     low = small_floor()
     n = len(low.nodes)
-    nodes = np.vstack([low.nodes, low.nodes + [0.0, 0.0, 4.0]])
+    nodes = np.vstack([low.nodes, low.nodes + np.array([0.0, 0.0, 4.0])])
     (slab,) = low.shells
     slabs = tuple(ShellGroup(elements=slab.elements + k * n, section=SECTION) for k in (0, 1))
     decks = tuple(
@@ -115,9 +118,7 @@ def test_unnamed_storeys_and_doubled_names_are_refused():
     with pytest.raises(InputError, match="two surfaces are called 'level 1'"):
         Floor(**parts, decks=(decks[0], decks[0]))
     with pytest.raises(InputError, match="no element of its groups lies in its plane"):
-        Surface(
-            name="roof", nodes=parts["nodes"], groups=parts["shells"], frame=Frame.level(8.0)
-        )
+        Surface(name="roof", nodes=parts["nodes"], groups=parts["shells"], frame=Frame.level(8.0))
 
 
 @pytest.mark.parametrize(

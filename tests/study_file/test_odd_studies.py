@@ -7,12 +7,12 @@ import pytest
 
 from models import small_floor
 from studies import GOOD, LIBRARY, problems, run_main
-from trundle.dynamics import Modal, ModalRatio
+from trundle.dynamics import ModalRatio
 from trundle.errors import InputError
 from trundle.road import RoadClass
 from trundle.route import Route
 from trundle.run.whole_study import run_study
-from trundle.simulate import Coupled, Crossing, lay_out
+from trundle.simulate import Coupled, Crossing, Modal, lay_out
 from trundle.study.doubts import study_doubts
 from trundle.study_file.build import load_study
 from trundle.vehicle import library_vehicle

@@ -14,22 +14,20 @@ from scipy.ndimage import convolve1d
 from models import small_floor
 from trundle.dynamics import (
     ExactRecursion,
-    Modal,
     ModalRatio,
-    Newmark,
     NewmarkPropagator,
     Rayleigh,
     restoring_filter,
 )
 from trundle.road import Profile
 from trundle.route import DriveIn, Route
-from trundle.simulate import Coupled, Crossing, ensemble, prepare
+from trundle.simulate import Coupled, Crossing, Modal, Newmark, ensemble, prepare
 from trundle.simulate.direct import march
 from trundle.simulate.direct.floors import FullFloor
-from trundle.simulate.layout import springs_of
-from trundle.simulate.modal.block_march import Steps, drive_in_blocks
+from trundle.simulate.modal.block_march import drive_in_blocks
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.point_motion import complete, point_filters
+from trundle.simulate.wheels.contacts import Contacts, Wheels
 from trundle.simulate.wheels.roads import drawn_roads, roads_under_wheels
 from trundle.simulate.wheels.timeline import operator_rows, timeline_of
 from trundle.structure import Hermite
@@ -71,7 +69,7 @@ def direct_states(floor, crossing, method, duration):
         sparse.csr_array(np.eye(1, floor.n_dofs)), flexibility=prepared.flexibility, coupled=True,
     )  # fmt: skip
     law = march.ContactLaw(
-        springs=springs_of((crossing,)),
+        springs=Contacts(vehicles=(crossing.vehicle,)).springs,
         vehicle=NewmarkPropagator(crossing.vehicle.free_system, method.integration),
     )
     vehicle, forces = march.run_in(law, timeline, road)
@@ -101,21 +99,17 @@ def modal_states(floor, crossing, method, duration):
         modes, prepared.propagator, rows, timeline.speed[timeline.n_run_in :], reader,
         flexibility=None,
     )  # fmt: skip
-    vehicle, standing = (
-        ExactRecursion(system, method.integration.dt)
-        for system in (crossing.vehicle.free_system, crossing.vehicle.system)
-    )
-    springs = springs_of((crossing,))
+    vehicle = ExactRecursion(crossing.vehicle.free_system, method.integration.dt)
+    contacts = Contacts(vehicles=(crossing.vehicle,))
     record = drive_in_blocks(
-        Steps(
-            vehicles=((springs, standing),), springs=springs, together=standing, timeline=timeline
-        ),
-        carrier, road, weight=np.ones(1), coupled=True, static=False,
+        Wheels(contacts=contacts, timeline=timeline, static=False),
+        carrier, road, weight=np.ones(1), coupled=True,
     )  # fmt: skip
     record = complete(record, point_filters(carrier, None))
     forces = record.forces[:, :, 0]
     push = (forces - crossing.vehicle.static_forces) @ crossing.vehicle.contact_map
     push = convolve1d(push, restoring_filter(), axis=0, mode="nearest")
+    springs = contacts.springs
     e, k = springs.contact_map, springs.stiffness
     still = np.linalg.solve(springs.standing_stiffness, e.T @ (k * road.start))[:, 0]
     states = [np.concatenate([still, 0 * still])]

@@ -5,7 +5,7 @@ import pytest
 from iec_mask import mask
 from scipy import signal
 
-from trundle.dynamics import LinearSystem, Newmark, NewmarkPropagator
+from trundle.dynamics import LinearSystem, NewmarkPropagator
 from trundle.dynamics.stepping import State
 from trundle.signals import (
     band_edges,
@@ -14,6 +14,7 @@ from trundle.signals import (
     mid_band_frequencies,
     nominal_frequency,
 )
+from trundle.simulate import Newmark
 
 CASE = "V8"
 SOURCE = "IEC 61260-1:2014"

@@ -20,6 +20,7 @@ from trundle.simulate import (
     lay_out_places,
     prepare,
 )
+from trundle.structure import Spots
 from trundle.vehicle import container_truck_40ft
 
 CASE = "V8 verdict"
@@ -56,7 +57,9 @@ def test_a_map_against_histories(record):
         "method": method, "points": {f"n{i}": tuple(p) for i, p in enumerate(nodes)}, "duration": 12.0,
     }  # fmt: skip
     runs = ensemble(prepared, way, n_runs=3, seed=6, **settings)
-    responses = lay_out_places(prepared, lay_out(prepared, way, **settings), nodes, single=False)
+    responses = lay_out_places(
+        prepared, lay_out(prepared, way, **settings), Spots(xy=nodes), single=False
+    )
     forces = np.transpose(runs.contact_forces, (1, 2, 0))
     source = "band levels, RMS and peaks of histories at the same nodes"
     for rule in ("event", "max_1s"):

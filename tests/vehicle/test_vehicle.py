@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from trundle.dynamics import Modal
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
 from trundle.route import Ramp, Route
-from trundle.simulate import Crossing, Newmark, contact_forces
+from trundle.simulate import Crossing, Modal, Newmark, contact_forces
 from trundle.vehicle import (
     GRAVITY,
     VEHICLES,

@@ -102,7 +102,7 @@ def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
             f_max=limit,
             progress=lambda share: tell(f"modes below {limit:g} Hz", share),
         )
-    participation = found.shapes.T @ (floor.mass @ floor.rigid_vector(2))
+    participation = found.forces(floor.mass @ floor.rigid_vector(2))
     if as_json:
         columns = (found.frequencies, participation**2, found.residuals)
         names = ("frequency_hz", "vertical_effective_mass_kg", "residual")

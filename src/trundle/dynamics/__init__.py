@@ -2,8 +2,9 @@
 
 from trundle.dynamics.damping import Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
-from trundle.dynamics.exact import ExactRecursion, Modal, ModalRecursion
-from trundle.dynamics.newmark import HalfStep, Newmark, NewmarkPropagator
+from trundle.dynamics.exact import ExactRecursion, ModalRecursion
+from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
+from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
 from trundle.dynamics.same_bits import repeatable
 from trundle.dynamics.sampling import (
     REACH,
@@ -27,16 +28,16 @@ __all__ = [
     "HalfSolve",
     "HalfStep",
     "LinearSystem",
-    "Modal",
     "ModalRatio",
     "ModalRecursion",
     "Modes",
     "Motion",
-    "Newmark",
+    "NewmarkParameters",
     "NewmarkPropagator",
     "Propagator",
     "Rayleigh",
     "State",
+    "are_modes_of",
     "available_backends",
     "block_diagonal",
     "count_modes_below",
@@ -44,6 +45,8 @@ __all__ = [
     "factorise",
     "following_filters",
     "image_filters",
+    "modes_as_arrays",
+    "modes_from_arrays",
     "natural_modes",
     "repeatable",
     "responses_of",

@@ -3,14 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import non_negative, positive, set_frozen, within
 from trundle._typing import Array, Matrix
-from trundle.errors import InputError
+from trundle.errors import FitnessWarning, InputError
+
+__all__ = ["Damping", "ModalRatio", "Rayleigh"]
+
+_HEAVY = 0.10  # damping ratio above which Rayleigh damping suppresses what it should show
+_LOOKED_AT = (10.0, 20.0, 40.0, 80.0)  # Hz
+
+
+@runtime_checkable
+class Damping(Protocol):
+    """How a structure is damped: a ratio for each mode, and matrices where it can be had so."""
+
+    def ratios(self, omega: Float[Array, " modes"]) -> Float[Array, " modes"]:
+        """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
+        ...
+
+    @property
+    def rayleigh(self) -> Rayleigh | None:
+        """The same as ``alpha M + beta K``; None where it is no such sum."""
+        ...
+
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """Return what a result must say of it."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +83,20 @@ class Rayleigh:
         """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
         return self.alpha / (2.0 * omega) + self.beta * omega / 2.0
 
+    @property
+    def rayleigh(self) -> Rayleigh:
+        """Itself."""
+        return self
+
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """Say how it grows where it grows beyond a tenth of critical."""
+        ratios = self.ratios(2.0 * np.pi * np.array(_LOOKED_AT))
+        if ratios.max() < _HEAVY:
+            return ()
+        told = zip(_LOOKED_AT, ratios, strict=True)
+        text = ", ".join(f"{100 * z:.2g} % at {x:g} Hz" for x, z in told)
+        return (FitnessWarning(subject="damping", message=f"Rayleigh damping grows: {text}"),)
+
     def matrix(self, mass: Matrix, stiffness: Matrix) -> Matrix:
         """Return C [N s/m] for the given mass and stiffness matrices."""
         return self.alpha * mass + self.beta * stiffness
@@ -93,10 +130,15 @@ class ModalRatio:
         """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
         return np.full_like(omega, self.ratio)
 
+    @property
+    def rayleigh(self) -> Rayleigh | None:
+        """None: it would fill the whole matrix; without damping both coefficients are 0."""
+        return None if self.ratio else Rayleigh(alpha=0.0, beta=0.0)
+
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """Say nothing: every mode has what was asked for."""
+        return ()
+
     def __str__(self) -> str:
         """Describe the model for a report."""
         return f"{100 * self.ratio:g} % of critical in every mode"
-
-
-Damping: TypeAlias = Rayleigh | ModalRatio
-"""The damping models that a floor can have."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 from scipy import linalg, sparse
 from threadpoolctl import threadpool_limits
 
@@ -58,6 +58,18 @@ class Modes:
         """Number of modes."""
         return len(self.omega)
 
+    def seen(self, reader: SparseMatrix) -> Float[Array, "rows modes"]:
+        """Return the shapes as rows of weights (n_rows, n_dofs) see them."""
+        return np.asarray(reader @ self.shapes)
+
+    def at(self, dofs: Int[Array, " dofs"]) -> Float[Array, "dofs modes"]:
+        """Return the shapes at some dofs."""
+        return self.shapes[dofs]
+
+    def forces(self, load: Float[Array, " dofs"]) -> Float[Array, " modes"]:
+        """Return the modal forces of a load."""
+        return self.shapes.T @ load
+
     def below(self, f: float) -> Modes:
         """Return the modes below a frequency [Hz], at most `f_max`."""
         fewer = self.first(int(np.searchsorted(self.frequencies, f)))
@@ -65,11 +77,15 @@ class Modes:
 
     def first(self, n_modes: int) -> Modes:
         """Return the first modes, with the same `f_max`."""
+        return self.part(slice(n_modes))
+
+    def part(self, which: slice) -> Modes:
+        """Return some of the modes, with the same `f_max`."""
         return replace(
             self,
-            omega=self.omega[:n_modes],
-            shapes=self.shapes[:, :n_modes],
-            residuals=self.residuals[:n_modes],
+            omega=self.omega[which],
+            shapes=self.shapes[:, which],
+            residuals=self.residuals[which],
         )
 
 

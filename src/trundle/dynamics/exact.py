@@ -7,52 +7,16 @@ between the steps.
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 from scipy import linalg
 
-from trundle._checks import positive, set_frozen
+from trundle._checks import positive
 from trundle._typing import Array
 from trundle.dynamics.system import LinearSystem
 
-__all__ = ["ExactRecursion", "Modal", "ModalRecursion"]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Modal:
-    """Choose modal superposition with all modes below a frequency, stepped exactly.
-
-    Attributes
-    ----------
-    f_max : float
-        All modes below this frequency are kept [Hz].
-    dt : float
-        Time step [s].
-    residual : bool
-        Add the static flexibility of the modes left out (True), or leave them out altogether.
-    single : bool
-        Carry the floor's state over the steps in single precision: faster, to some 1e-4.
-    """
-
-    f_max: float
-    dt: float
-    residual: bool = True
-    single: bool = False
-
-    def __post_init__(self) -> None:
-        """Check both numbers."""
-        set_frozen(self, f_max=positive("f_max", self.f_max), dt=positive("dt", self.dt))
-
-    def __str__(self) -> str:
-        """Describe the method for a report."""
-        rest = "" if self.residual else "nothing for the modes above, "
-        rest += "single precision, " if self.single else ""
-        return (
-            f"modal superposition, modes below {self.f_max:g} Hz, {rest}exact recursion, "
-            f"dt = {1e3 * self.dt:g} ms"
-        )
+__all__ = ["ExactRecursion", "ModalRecursion"]
 
 
 def first_order_hold(state_matrix: Array, input_matrix: Array, dt: float) -> tuple[Array, ...]:

@@ -3,57 +3,39 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
 from scipy import linalg, sparse
 
-from trundle._checks import positive, set_frozen, within
 from trundle._typing import Array, Matrix
 from trundle.dynamics.damping import Rayleigh
 from trundle.dynamics.sparse_solver import Factor, HalfSolve, factorise
 from trundle.dynamics.stepping import Motion, State
 from trundle.dynamics.system import LinearSystem
 
-__all__ = ["HalfStep", "Newmark", "NewmarkPropagator"]
+__all__ = ["HalfStep", "NewmarkParameters", "NewmarkPropagator"]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Newmark:
-    """Choose Newmark's method; the defaults are constant average acceleration.
+@runtime_checkable
+class NewmarkParameters(Protocol):
+    """A time step [s] and Newmark's two parameters."""
 
-    Attributes
-    ----------
-    dt : float
-        Time step [s].
-    gamma, beta : float
-        Newmark's parameters; 1/2 and 1/4 keep energy and lengthen periods by
-        ``(omega dt)^2 / 12``.
-    """
+    @property
+    def dt(self) -> float:
+        """Time step [s]."""
+        ...
 
-    dt: float
-    gamma: float = 0.5
-    beta: float = 0.25
+    @property
+    def gamma(self) -> float:
+        """Share of the step's last acceleration in its velocity."""
+        ...
 
-    def __post_init__(self) -> None:
-        """Check that the scheme is stable at any step."""
-        set_frozen(
-            self,
-            dt=positive("dt", self.dt),
-            gamma=within("newmark gamma", self.gamma, 0.5, 1.0),
-        )
-        lowest = 0.25 * (0.5 + self.gamma) ** 2
-        remedy = "smaller values are stable only for short steps"
-        set_frozen(self, beta=within("newmark beta", self.beta, lowest - 1e-12, 1.0, remedy=remedy))
-
-    def __str__(self) -> str:
-        """Describe the method for a report."""
-        name = (
-            "constant average acceleration"
-            if (self.gamma, self.beta) == (0.5, 0.25)
-            else f"gamma {self.gamma:g}, beta {self.beta:g}"
-        )
-        return f"direct integration, Newmark {name}, dt = {1e3 * self.dt:g} ms"
+    @property
+    def beta(self) -> float:
+        """Share of it in its displacement."""
+        ...
 
 
 class _DenseSolver:
@@ -106,7 +88,7 @@ class NewmarkPropagator:
     def __init__(
         self,
         system: LinearSystem,
-        method: Newmark,
+        method: NewmarkParameters,
         *,
         rayleigh: Rayleigh | None = None,
         backend: str | None = None,

@@ -170,7 +170,7 @@ def _bar(study: Study, planned: Sequence[Combination], tell: Tell) -> Bar:
 
 def _modes(slab: Study) -> Modes | None:
     """Find the modes of a slab, as far as the assessed method keeps them."""
-    f_max = getattr(assessed(slab)[1].interaction.integration, "f_max", None)
+    f_max = assessed(slab)[1].interaction.integration.f_max
     if f_max is None:
         return None
     with repeatable():

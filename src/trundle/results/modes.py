@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.dynamics import Modes
+from trundle.structure import Structure
 
 __all__ = ["FirstModes", "first_modes"]
 
@@ -22,12 +24,12 @@ class FirstModes:
     ----------
     frequencies : ndarray of float, shape (n_modes,)
         Natural frequencies, rising [Hz].
-    shapes : ndarray of float, shape (n_dofs, n_kept)
-        Shapes of the first, normalised to unit modal mass.
+    vertical : ndarray of float, shape (n_nodes, n_kept)
+        Vertical motion of every node in the first, normalised to unit modal mass.
     """
 
     frequencies: Float[Array, " modes"]
-    shapes: Float[Array, "dofs kept"]
+    vertical: Float[Array, "nodes kept"]
 
     @property
     def n_modes(self) -> int:
@@ -35,6 +37,9 @@ class FirstModes:
         return len(self.frequencies)
 
 
-def first_modes(modes: Modes) -> FirstModes:
-    """Return what results keep of modes."""
-    return FirstModes(frequencies=modes.frequencies, shapes=modes.shapes[:, :_KEPT].copy())
+def first_modes(modes: Modes, floor: Structure) -> FirstModes:
+    """Return what results keep of a floor's modes."""
+    rows = floor.dof_index[:, 2]
+    moving = modes.first(_KEPT).at(np.maximum(rows, 0))
+    vertical = np.where(rows[:, None] >= 0, moving, 0.0)
+    return FirstModes(frequencies=modes.frequencies, vertical=vertical)

@@ -13,7 +13,7 @@ from jaxtyping import Float, Int
 from scipy import sparse
 
 from trundle._typing import Array
-from trundle.structure import ContactShape, Floor, Surface
+from trundle.structure import ContactShape, Structure, Surface
 
 __all__ = ["ContactRows", "contact_rows"]
 
@@ -84,7 +84,7 @@ class ContactRows:
 
 
 def contact_rows(
-    floor: Floor,
+    floor: Structure,
     places: Float[Array, "n 2"],
     directions: Float[Array, "n 2"],
     *,
@@ -95,7 +95,7 @@ def contact_rows(
 
     Parameters
     ----------
-    floor : Floor
+    floor : Structure
         The structure.
     places : ndarray of float, shape (n, 2)
         Places on the surface [m].
@@ -148,7 +148,7 @@ def _turned(weights: Array, turn: Array) -> Array:
     return (by_node @ turn).reshape(len(weights), -1)
 
 
-def _load_share(floor: Floor, surface: Surface, places: Array, directions: Array) -> Array:
+def _load_share(floor: Structure, surface: Surface, places: Array, directions: Array) -> Array:
     share = np.ones(len(places))
     for mirror in floor.mirrors:
         at = surface.frame.in_space(places)[:, mirror.axis]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -13,6 +13,26 @@ from trundle._typing import Array
 from trundle.errors import InputError
 
 __all__ = ["Abrupt", "DriveIn", "Entry", "Ramp", "StaticStart", "entry_named"]
+
+
+@runtime_checkable
+class Entry(Protocol):
+    """A way onto a floor, and off it."""
+
+    @property
+    def standing(self) -> bool:
+        """Whether the vehicle stands on the floor at time 0, in equilibrium with it."""
+        ...
+
+    def lead(self, vehicle_length: float) -> float:
+        """Return where the front axle stands at time 0 [m]."""
+        ...
+
+    def share(
+        self, station: Float[Array, ...], route_length: float
+    ) -> tuple[Float[Array, ...], Float[Array, ...]]:
+        """Return the share of a wheel's force that the floor carries, and its slope [1/m]."""
+        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,6 +53,11 @@ class Ramp:
     def __post_init__(self) -> None:
         """Check the length."""
         set_frozen(self, length=positive("ramp length", self.length))
+
+    @property
+    def standing(self) -> bool:
+        """Whether the vehicle stands on the floor at time 0, in equilibrium with it: no."""
+        return False
 
     def lead(self, vehicle_length: float) -> float:
         """Return where the front axle stands at time 0 [m]: at the foot of the ramp."""
@@ -73,6 +98,11 @@ class DriveIn:
         """Check the length."""
         set_frozen(self, length=positive("drive-in length", self.length))
 
+    @property
+    def standing(self) -> bool:
+        """Whether the vehicle stands on the floor at time 0, in equilibrium with it: no."""
+        return False
+
     def lead(self, vehicle_length: float) -> float:
         """Return where the front axle stands at time 0 [m]: at the edge."""
         del vehicle_length
@@ -109,6 +139,11 @@ class StaticStart:
         """Check the length."""
         set_frozen(self, exit_length=positive("exit_length", self.exit_length))
 
+    @property
+    def standing(self) -> bool:
+        """Whether the vehicle stands on the floor at time 0, in equilibrium with it: yes."""
+        return True
+
     def lead(self, vehicle_length: float) -> float:
         """Return where the front axle stands at time 0 [m]: the rear axle is at the edge."""
         return vehicle_length
@@ -137,6 +172,11 @@ class Abrupt:
     so that its response depends on the time step.
     """
 
+    @property
+    def standing(self) -> bool:
+        """Whether the vehicle stands on the floor at time 0, in equilibrium with it: no."""
+        return False
+
     def lead(self, vehicle_length: float) -> float:
         """Return where the front axle stands at time 0 [m]: at the edge."""
         del vehicle_length
@@ -152,10 +192,6 @@ class Abrupt:
     def __str__(self) -> str:
         """Describe the entry for a report."""
         return "abrupt: each axle's whole load at once"
-
-
-Entry: TypeAlias = Ramp | DriveIn | StaticStart | Abrupt
-"""The ways onto a floor."""
 
 
 def entry_named(name: str, length: float | None = None) -> Entry:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -124,11 +124,14 @@ class Route:
         Speed of the front axle; time 0 is when it stands at the crossing's start.
     name : str
         Name for tables.
+    on : str or None
+        Name of the surface that the line lies on; None where a structure has only one.
     """
 
     points: Float[Array, "points 2"]
     law: SpeedLaw
     name: str = "route"
+    on: str | None = None
 
     def __post_init__(self) -> None:
         """Check that the line has a length everywhere."""
@@ -160,7 +163,7 @@ class Route:
 
     def reversed(self) -> Route:
         """Return the same line driven the other way."""
-        return Route(points=self.points[::-1], law=self.law, name=self.name)
+        return replace(self, points=self.points[::-1])
 
     def locate(
         self, station: ArrayLike, lateral: ArrayLike = 0.0

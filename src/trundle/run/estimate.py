@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 
-from trundle.dynamics import Modal
 from trundle.run.costs import Size, run_in_steps
 from trundle.run.jobs import Job, plan_jobs
 from trundle.run.mode_cache import has_modes
@@ -130,7 +129,7 @@ def memory_there_is() -> float:
 def n_modes_of(plan: FloorPlan, job: Job) -> float:
     """Return about how many modes a job's method keeps."""
     integration = job.method.interaction.integration
-    if not isinstance(integration, Modal):
+    if integration.f_max is None:
         return 0.0
     slab, material = plan.slab, plan.slab.material
     area = float(np.ptp(plan.x_extent) * np.ptp(plan.y_extent))
@@ -142,7 +141,7 @@ def n_modes_of(plan: FloorPlan, job: Job) -> float:
 def seconds_of_modes(study: Study, jobs: Sequence[Job]) -> float:
     """Return how long the modes of jobs take, nothing where they are kept from before [s]."""
     integrations = (job.method.interaction.integration for job in jobs)
-    f_max = max((i.f_max for i in integrations if isinstance(i, Modal)), default=0.0)
+    f_max = max((i.f_max or 0.0 for i in integrations), default=0.0)
     if f_max == 0.0 or has_modes(study.floor, f_max):
         return 0.0
     n_modes = max(n_modes_of(study.plan, job) for job in jobs)

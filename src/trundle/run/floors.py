@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from trundle.dynamics import Modes
 from trundle.run.jobs import Job
-from trundle.simulate import Coupled, PreparedFloor, StaticFlexibility, prepare
+from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
 from trundle.structure import Floor
 from trundle.study.model import MethodPlan
 
@@ -20,7 +20,7 @@ class Floors:
         self._floor, self._modes = floor, modes
         self._flexibility = StaticFlexibility(floor)
         # All routes, whatever is missing: a resumed run must solve for the same things together.
-        coupled = [job for job in jobs if job.modal and isinstance(job.method.interaction, Coupled)]
+        coupled = [job for job in jobs if job.modal and job.method.interaction.moves]
         self._routes = {crossing.route: crossing for job in coupled for crossing in job.crossings}
         self._held: tuple[MethodPlan, PreparedFloor] | None = None
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trundle.criteria import spectra_asked_for
-from trundle.dynamics import Modal
 from trundle.response import (
     SpectrumQuantity,
 )
@@ -92,7 +91,7 @@ class Job:
     @property
     def modal(self) -> bool:
         """Whether the floor is stepped in its modes."""
-        return isinstance(self.method.interaction.integration, Modal)
+        return self.method.interaction.integration.f_max is not None
 
 
 def plan_jobs(study: Study) -> tuple[Job, ...]:
@@ -126,7 +125,7 @@ def _jobs(
     size = runs_at_once(crossings, dt, length, len(study.points))
     n_parts = -(-study.runs // size)
     edges = np.linspace(0, study.runs, n_parts + 1).astype(int)
-    modal = isinstance(method.interaction.integration, Modal)
+    modal = method.interaction.integration.f_max is not None
     job = Job(
         name=name,
         case=case,

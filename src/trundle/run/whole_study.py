@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
 
-import numpy as np
-
 from trundle._kinds import kinds_checked
 from trundle._progress import Tell, silent
 from trundle._words import in_kmh
 from trundle.criteria import Verdict, assess_reduced
-from trundle.dynamics import Modal, Modes, repeatable
+from trundle.dynamics import Modes, repeatable
 from trundle.errors import InputError
 from trundle.results.cells import Cell, CellKey
 from trundle.results.maps import MapKey, StudyMap
@@ -113,7 +111,7 @@ def _result(
         cells=cells,
         verdicts=verdicts,
         maps=_in_order(study, maps),
-        modes=None if modes is None else first_modes(modes),
+        modes=None if modes is None else first_modes(modes, study.floor),
         provenance=provenance_of(study),
     )
 
@@ -140,12 +138,7 @@ def _keys(study: Study) -> Iterator[CellKey]:
 def _all_modes(study: Study, tell: Tell) -> Modes | None:
     """Find the modes once, as far as the most demanding method needs them."""
     f_max = max(
-        (
-            method.interaction.integration.f_max
-            for method in study.methods
-            if isinstance(method.interaction.integration, Modal)
-        ),
-        default=0.0,
+        (method.interaction.integration.f_max or 0.0 for method in study.methods), default=0.0
     )
     if f_max == 0.0:
         return None
@@ -161,8 +154,8 @@ def _check_first_mode(study: Study, modes: Modes) -> None:
     """Refuse a method that keeps no mode below half its frequency: nothing would tell its error."""
     first = float(modes.frequencies[0])
     for method in study.methods:
-        f_max = getattr(method.interaction.integration, "f_max", np.inf)
-        if first >= 0.5 * f_max:
+        f_max = method.interaction.integration.f_max
+        if f_max is not None and first >= 0.5 * f_max:
             raise InputError(
                 f"{study.source}: method {method.name!r} keeps modes to f_max = {f_max:g} Hz, and "
                 f"the floor's first is at {first:.3g} Hz: raise f_max above {2.0 * first:.3g} Hz, "

@@ -1,8 +1,9 @@
 """Drive vehicles over floors: decoupled or coupled, one at a time or together."""
 
-from trundle.dynamics import Modal, ModalRatio, Newmark, Rayleigh
+from trundle.dynamics import Damping, ModalRatio, Rayleigh
 from trundle.simulate.coverage import Coverage, coverage_of
-from trundle.simulate.crossing import Coupled, Crossing, Decoupled, Integration, Interaction
+from trundle.simulate.crossing import Crossing
+from trundle.simulate.direct.method import Newmark
 from trundle.simulate.ensembles import (
     batches,
     contact_force_histories,
@@ -10,12 +11,14 @@ from trundle.simulate.ensembles import (
     ensemble,
     runs_with_mean,
 )
-from trundle.simulate.fitness import resolved_to
+from trundle.simulate.ground import Ground, Integration, PreparedFloor
+from trundle.simulate.interaction import Coupled, Decoupled, Interaction
 from trundle.simulate.laying_out import lay_out
 from trundle.simulate.layout import Layout
+from trundle.simulate.modal.method import Modal
 from trundle.simulate.modal.residual import StaticFlexibility
 from trundle.simulate.point_load import point_load_deflection
-from trundle.simulate.prepared import PreparedFloor, prepare
+from trundle.simulate.prepared import prepare
 from trundle.simulate.runs import MeanResponse, Runs
 from trundle.simulate.spectral.harmonics import (
     Harmonics,
@@ -32,7 +35,9 @@ __all__ = [
     "Coupled",
     "Coverage",
     "Crossing",
+    "Damping",
     "Decoupled",
+    "Ground",
     "Harmonics",
     "Integration",
     "Interaction",
@@ -61,7 +66,6 @@ __all__ = [
     "place_waves",
     "point_load_deflection",
     "prepare",
-    "resolved_to",
     "runs_with_mean",
     "truncation_change",
 ]

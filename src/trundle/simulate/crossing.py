@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass, field
-from typing import Literal, TypeAlias
+from typing import Literal
 
 import numpy as np
 
 from trundle._checks import finite, non_negative, one_of, set_frozen
 from trundle._kinds import kinds_checked
-from trundle.dynamics import Damping, Modal, ModalRatio, Newmark
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
-from trundle.route import DriveIn, Entry, Route, StaticStart
-from trundle.structure import ContactShape, Hermite
+from trundle.route import DriveIn, Entry, Route
 from trundle.vehicle import Vehicle
 
-__all__ = ["TAIL", "Coupled", "Crossing", "Decoupled", "Integration", "Interaction"]
+__all__ = ["TAIL", "Crossing"]
 
 TAIL = 5.0
 """Free decay after the last wheel has left that a record holds, unless its length is given [s]."""
-
-Integration: TypeAlias = Newmark | Modal
-"""How the floor's equations are integrated in time."""
 
 _RUN_IN_LIMIT = 20.0  # s; a vehicle without damping would otherwise run in for ever
 
@@ -75,7 +70,7 @@ class Crossing:
     def __post_init__(self) -> None:
         """Check times and distances."""
         one_of("start", self.start, ("equilibrium", "level"))
-        if self.start == "level" and isinstance(self.entry, StaticStart):
+        if self.start == "level" and self.entry.standing:
             raise InputError(
                 "a static start is in equilibrium with the floor: leave start out, or choose "
                 "another entry"
@@ -123,73 +118,6 @@ class Crossing:
             return None
         place, _ = self.route.locate(np.array([station]))
         return float(place[0, 0]), float(place[0, 1])
-
-
-@kinds_checked
-@dataclass(frozen=True, kw_only=True)
-class Decoupled:
-    """Load the floor with the contact forces of a vehicle on rigid ground.
-
-    The paper's dynamic nodal loading (DNL), "non-interaction".
-
-    Attributes
-    ----------
-    integration : Newmark or Modal
-        Time integration of vehicle and floor; modes to 90 Hz in steps of 5 ms, which shows
-        bands up to 80 Hz, unless given.
-    damping : Rayleigh or ModalRatio
-        Damping of the floor.
-    contact : Hermite or Hat
-        Interpolation of the load between nodes.
-    """
-
-    integration: Integration = field(default_factory=lambda: Modal(f_max=112.0, dt=0.005))
-    damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
-    contact: ContactShape = field(default_factory=Hermite)
-
-    def __post_init__(self) -> None:
-        """Refuse a damping that the integration cannot carry."""
-        _check_damping(self.integration, self.damping)
-
-    def __str__(self) -> str:
-        """Describe the method for a report."""
-        return f"decoupled; {self.integration}; {self.damping}; {self.contact}"
-
-
-@kinds_checked
-@dataclass(frozen=True, kw_only=True)
-class Coupled:
-    """Solve vehicle and floor together at every step, without factorising anything again.
-
-    The paper's dynamic finite-element method (DFE), "interaction". Attributes as in
-    `Decoupled`.
-    """
-
-    integration: Integration = field(default_factory=lambda: Modal(f_max=112.0, dt=0.005))
-    damping: Damping = field(default_factory=lambda: ModalRatio(ratio=0.03))
-    contact: ContactShape = field(default_factory=Hermite)
-
-    def __post_init__(self) -> None:
-        """Refuse a damping that the integration cannot carry."""
-        _check_damping(self.integration, self.damping)
-
-    def __str__(self) -> str:
-        """Describe the method for a report."""
-        return f"coupled; {self.integration}; {self.damping}; {self.contact}"
-
-
-Interaction: TypeAlias = Decoupled | Coupled
-"""How vehicle and floor act on each other."""
-
-
-def _check_damping(integration: Integration, damping: Damping) -> None:
-    if isinstance(integration, Newmark) and isinstance(damping, ModalRatio) and damping.ratio:
-        f1, f2 = 3.75, 5.8
-        raise InputError(
-            "direct integration needs Rayleigh damping: a ratio for every mode would fill the "
-            f"whole matrix; use Rayleigh.through({damping.ratio:g}, {f1}, {f2}) with two "
-            "frequencies of the floor, or modal superposition"
-        )
 
 
 def contact_count(crossings: tuple[Crossing, ...]) -> int:

@@ -11,16 +11,17 @@ from trundle._checks import count
 from trundle._kinds import kinds_checked
 from trundle._progress import Progress
 from trundle._typing import Array
-from trundle.simulate.crossing import Crossing, Integration, Interaction
-from trundle.simulate.direct.march import Record
+from trundle.simulate.crossing import Crossing
 from trundle.simulate.fitness import contact_warnings
-from trundle.simulate.laying_out import lay_out, lay_out_on_rigid_ground
+from trundle.simulate.ground import Integration, PreparedFloor
+from trundle.simulate.interaction import Interaction
+from trundle.simulate.laying_out import Place, lay_out, lay_out_on_rigid_ground
 from trundle.simulate.layout import Layout
-from trundle.simulate.prepared import PreparedFloor
 from trundle.simulate.runs import MeanResponse, Runs
+from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import roads_under_wheels
 from trundle.simulate.wheels.timeline import Timeline, timeline_of
-from trundle.structure import Floor
+from trundle.structure import Structure
 
 __all__ = [
     "LEAST_BATCH",
@@ -39,11 +40,11 @@ _MOST_RUNS = 1024  # in a batch; more would gain nothing
 
 @kinds_checked
 def ensemble(
-    floor: Floor | PreparedFloor,
+    floor: Structure | PreparedFloor,
     crossings: Crossing | Sequence[Crossing],
     *,
     method: Interaction,
-    points: Mapping[str, tuple[float, float]],
+    points: Mapping[str, Place],
     n_runs: int,
     seed: int,
     duration: float | None = None,
@@ -53,13 +54,13 @@ def ensemble(
 
     Parameters
     ----------
-    floor : Floor or PreparedFloor
+    floor : Structure or PreparedFloor
         The floor; prepare it once where several ensembles share it.
     crossings : Crossing or sequence of Crossing
         One vehicle, or several at once.
     method : Decoupled or Coupled
         Interaction, integration, damping and contact.
-    points : mapping of str to (x, y)
+    points : mapping of str to (x, y) or Spot
         Where the response is read [m].
     n_runs : int
         Number of runs; each draws its own roads.
@@ -169,7 +170,7 @@ def contact_force_histories(
     return forces[:, :, :-1], forces[:, :, -1:]
 
 
-def mean_of(layout: Layout, record: Record) -> MeanResponse:
+def mean_of(layout: Layout, record: Driven) -> MeanResponse:
     """Return the last column of a record as a mean response."""
     return MeanResponse(
         time=layout.time,
@@ -181,7 +182,7 @@ def mean_of(layout: Layout, record: Record) -> MeanResponse:
     )
 
 
-def _runs_of(layout: Layout, record: Record, seed: int) -> Runs:
+def _runs_of(layout: Layout, record: Driven, seed: int) -> Runs:
     tension = np.any(record.forces < 0.0, axis=(0, 1))
     return Runs(
         time=layout.time,

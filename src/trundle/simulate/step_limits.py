@@ -15,8 +15,8 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.dynamics import TOP, ExactRecursion, ModalRecursion
 from trundle.errors import InputError
-from trundle.simulate.direct.march import Springs
 from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.wheels.contacts import Contacts, Springs
 from trundle.vehicle import Vehicle
 
 __all__ = ["check_contact_loop", "longest_step", "step_problem"]
@@ -49,9 +49,7 @@ def step_problem(vehicle: Vehicle, dt: float) -> str:
     )
 
 
-def check_contact_loop(
-    floor: ModalFloor, springs: Springs, together: ExactRecursion, n_steps: int
-) -> None:
+def check_contact_loop(floor: ModalFloor, contacts: Contacts, n_steps: int) -> None:
     """Refuse a step at which vehicle and floor would push each other up without end.
 
     Raises
@@ -60,7 +58,8 @@ def check_contact_loop(
         An eigenvalue of the loop that is not positive, at some place of the wheels.
     """
     worst, at = 1.0, 0
-    left = _left_of_a_push(springs, together)
+    springs = contacts.springs
+    left = _left_of_a_push(springs, ExactRecursion(contacts.standing, floor.dt))
     displacement, velocity = _at_half_the_rate(floor.propagator)
     k, c = springs.stiffness, springs.damping
     for step in range(0, n_steps, _STRIDE):

@@ -9,7 +9,6 @@ from jaxtyping import Float
 
 from trundle._checks import within
 from trundle._typing import Array
-from trundle.dynamics import Modal
 from trundle.errors import InputError
 from trundle.simulate.layout import Layout
 from trundle.simulate.runs import Runs
@@ -58,13 +57,17 @@ def truncation_change(
     share : float
         Part of the highest frequency to which modes are kept, 0 to 1.
     """
-    fewer = layout.with_modes_below(within("share", share, 0.0, 1.0) * _top(layout))
+    top = layout.integration.f_max
+    if top is None:
+        raise InputError("direct integration leaves no modes out")
+    top *= within("share", share, 0.0, 1.0)
+    fewer = layout.with_modes_below(top)
     some = numbers[:_RUNS]
     road = roads_under_wheels(layout.crossings, layout.timeline, some, runs.seed)
     record = fewer.over(road)
     n = len(some)
     return TruncationChange(
-        f_max=_top(fewer),
+        f_max=top,
         velocity=_change(record.velocity, runs.velocity[:n]),
         acceleration=_change(record.acceleration, runs.acceleration[:n]),
     )
@@ -75,9 +78,3 @@ def _change(other: Array, reference: Array) -> Array:
     difference = np.transpose(other, (2, 0, 1)) - reference
     whole = np.sqrt(np.mean(reference**2, axis=(0, 1)))
     return np.sqrt(np.mean(difference**2, axis=(0, 1))) / np.maximum(whole, np.finfo(float).tiny)
-
-
-def _top(layout: Layout) -> float:
-    if not isinstance(layout.integration, Modal):
-        raise InputError("direct integration leaves no modes out")
-    return layout.integration.f_max

@@ -14,7 +14,8 @@ from trundle.structure.elements import (
     SpringGroup,
     Standable,
 )
-from trundle.structure.floor import DOF_NAMES, Floor, MirrorPlane
+from trundle.structure.floor import DOF_NAMES, Floor
+from trundle.structure.model import MirrorPlane, Structure
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.reference import reference_plan, reference_unit
 from trundle.structure.resolution import (
@@ -51,6 +52,7 @@ __all__ = [
     "Spots",
     "SpringGroup",
     "Standable",
+    "Structure",
     "Surface",
     "arching",
     "beam_bridge",

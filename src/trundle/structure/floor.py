@@ -6,46 +6,30 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy import sparse
 
 from trundle._checks import frozen_array, set_frozen
+from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import Factor, Modes, factorise, natural_modes
 from trundle.errors import InputError
 from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Elements
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.spring import SpringGroup
+from trundle.structure.model import MirrorPlane
 from trundle.structure.surface import Surface, check_names, found_surface, named_surface
 
-__all__ = ["DOF_NAMES", "Floor", "MirrorPlane"]
+__all__ = ["DOF_NAMES", "Floor"]
 
 DOF_NAMES = ("ux", "uy", "uz", "rx", "ry", "rz")
 """The six degrees of freedom of a node, in the order of every matrix."""
 
 _ROUND_OFF = 1e-15  # against the roots of both diagonals; a coupling that counts is far above
-
-
-@dataclass(frozen=True, kw_only=True)
-class MirrorPlane:
-    """Hold a vertical plane of symmetry, at which the modelled part of a building ends.
-
-    What stands in the plane belongs to the model by half.
-
-    Attributes
-    ----------
-    axis : int
-        Axis normal to the plane: 0 for x, 1 for y.
-    position : float
-        Where the plane cuts that axis [m].
-    """
-
-    axis: int
-    position: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,7 +87,7 @@ class Floor:
         """All groups of elements."""
         return (*self.shells, *self.beams, *self.springs, *self.masses, *self.others)
 
-    @cached_property
+    @property
     def surfaces(self) -> Mapping[str, Surface]:
         """What is driven and stood on, by name.
 
@@ -112,16 +96,24 @@ class Floor:
         InputError
             None was given, and there is no level element, or there are several heights.
         """
+        return self._surfaces
+
+    @cached_property
+    def _surfaces(self) -> Mapping[str, Surface]:
         decks = self.decks or (found_surface(self.name, self.nodes, self.elements),)
-        return MappingProxyType({deck.name: deck for deck in decks})
+        return {deck.name: deck for deck in decks}
 
     def surface(self, name: str | None = None) -> Surface:
         """Return a surface by its name; None for the only one."""
         return named_surface(self.surfaces, name)
 
-    @cached_property
+    @property
     def dof_index(self) -> Int[Array, "nodes 6"]:
         """Row of each dof in the matrices, -1 where it is held or carries no element."""
+        return self._dof_index
+
+    @cached_property
+    def _dof_index(self) -> Int[Array, "nodes 6"]:
         free = ~self.fixed & self._carried
         index = np.full(self.fixed.shape, -1, dtype=np.intp)
         index[free] = np.arange(np.count_nonzero(free))
@@ -143,14 +135,30 @@ class Floor:
         """Consistent mass matrix of the free dofs [kg]."""
         return self._assemble(lambda group, xyz: group.mass_blocks(xyz))
 
-    @cached_property
+    @property
     def content_hash(self) -> str:
         """Hash of all that decides the matrices; equal floors share it."""
+        return self._content_hash
+
+    @cached_property
+    def _content_hash(self) -> str:
         digest = hashlib.sha256()
         for matrix in (self.stiffness, self.mass):
             for part in (matrix.indptr, matrix.indices, matrix.data):
                 digest.update(np.ascontiguousarray(part).tobytes())
         return digest.hexdigest()[:16]
+
+    def modes(self, f_max: float, *, progress: Progress | None = None) -> Modes:
+        """Return all natural modes below a frequency [Hz], see `natural_modes`."""
+        return natural_modes(self.mass, self.stiffness, f_max=f_max, progress=progress)
+
+    def flexibility(self) -> Factor:
+        """Return what solves for static deflections: the factorised stiffness."""
+        return factorise(self.stiffness)
+
+    def matrices(self) -> tuple[SparseMatrix, SparseMatrix]:
+        """Return mass [kg] and stiffness [N/m] of the free dofs."""
+        return self.mass, self.stiffness
 
     def nearest_node(self, x: float, y: float) -> int:
         """Return the number of the node nearest to a place in plan [m]."""

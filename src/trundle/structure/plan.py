@@ -15,7 +15,8 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.edges import EDGES, Edge, hold_edge, hold_plane, middle_of
 from trundle.structure.elements import BeamGroup, ShellGroup
-from trundle.structure.floor import Floor, MirrorPlane
+from trundle.structure.floor import Floor
+from trundle.structure.model import MirrorPlane
 from trundle.structure.sections import BeamSection, Material, ShellSection
 
 __all__ = ["FloorPlan", "Rectangle", "build_floor", "mesh_lines"]

@@ -191,6 +191,12 @@ class Surface:
         return cKDTree(np.concatenate([part.corners.mean(axis=1) for part in self._parts]))
 
     @property
+    def element_size(self) -> float:
+        """Median edge of its elements [m]."""
+        ends = self.nodes[self._parts[0].elements[:, :2]]
+        return float(np.median(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
+
+    @property
     def extent(self) -> tuple[Float[Array, " 2"], Float[Array, " 2"]]:
         """Lowest and highest x, y [m]."""
         flat = np.concatenate([part.corners.reshape(-1, 2) for part in self._parts])

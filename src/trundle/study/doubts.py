@@ -10,7 +10,7 @@ from trundle._typing import Array
 from trundle.criteria import BY_FREQUENCY
 from trundle.errors import FitnessWarning
 from trundle.signals import band_edges, mid_band_frequencies, nominal_frequency
-from trundle.simulate import coverage_of, resolved_to
+from trundle.simulate import coverage_of
 from trundle.structure import (
     ELEMENTS_PER_WAVE,
     FloorPlan,
@@ -120,7 +120,7 @@ def _bands_assessed(study: Study) -> Array:
             highest = max(float(curve.frequencies[-1]) for curve in curves) * 1.01
     integration = method.interaction.integration
     highest = min(highest, 0.4 / integration.dt * 1.01)
-    asked = (bands <= highest) & (band_edges(bands)[:, 1] <= resolved_to(integration))
+    asked = (bands <= highest) & (band_edges(bands)[:, 1] <= integration.f_resolved)
     return bands[asked & _excited(study, method, bands)]
 
 

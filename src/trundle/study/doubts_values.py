@@ -8,7 +8,6 @@ from typing import TypeAlias
 import numpy as np
 
 from trundle._typing import Array
-from trundle.dynamics import Modal, ModalRatio
 from trundle.errors import FitnessWarning
 from trundle.signals import Isolator
 from trundle.structure import FloorPlan, Material
@@ -135,14 +134,13 @@ def _method(place: str, method: MethodPlan) -> Typed:
     if length := getattr(method.entry, "length", None):
         yield f"{place}.entry_length", "entry", float(length)
     integration, damping = method.interaction.integration, method.interaction.damping
-    if isinstance(integration, Modal):
+    if integration.f_max is not None:
         yield f"{place}.f_max", "modes", integration.f_max
-    if isinstance(damping, ModalRatio):
-        yield f"{place}.damping.ratio", "damping", damping.ratio
+    ratios = damping.ratios(2.0 * np.pi * np.array(_DAMPED_AT))
+    if np.ptp(ratios) == 0.0:
+        yield f"{place}.damping.ratio", "damping", float(ratios[0])
         return
-    for f in _DAMPED_AT:
-        omega = 2.0 * np.pi * f
-        ratio = 0.5 * (damping.alpha / omega + damping.beta * omega)
+    for f, ratio in zip(_DAMPED_AT, ratios, strict=True):
         yield f"{place}.damping at {f:g} Hz", "rayleigh", float(ratio)
 
 

@@ -10,6 +10,7 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.criteria import Criterion
 from trundle.signals import Averaging
+from trundle.structure import Spots
 
 __all__ = ["MapPlan", "map_places"]
 
@@ -57,9 +58,9 @@ class MapPlan:
     speeds: tuple[float, ...]
 
     @property
-    def places(self) -> Float[Array, "places 2"]:
-        """Return the places in plan, x running fastest [m]."""
-        return np.stack(np.meshgrid(self.x, self.y), axis=-1).reshape(-1, 2)
+    def places(self) -> Spots:
+        """Return the places in plan, x running fastest."""
+        return Spots(xy=np.stack(np.meshgrid(self.x, self.y), axis=-1).reshape(-1, 2))
 
 
 def map_places(

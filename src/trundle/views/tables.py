@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trundle.dynamics import Modal
 from trundle.response import percentile_interval, tabled
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
@@ -154,7 +153,7 @@ def truncation_rows(result: StudyResult) -> list[TruncationRow]:
         for case in result.study.cases:
             change = result.cells[CellKey(case.name, road, method.name)].truncation
             modal = method.interaction.integration
-            if change is not None and isinstance(modal, Modal):
+            if change is not None and modal.f_max is not None:
                 rows.append(
                     TruncationRow(
                         case=case.name,

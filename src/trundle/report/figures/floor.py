@@ -219,13 +219,11 @@ def modes_figure(floor: Floor, modes: FirstModes, *, n_shown: int = 8) -> Figure
         floor.nodes[:, 1],
         np.vstack([elements[:, [0, 1, 2]], elements[:, [0, 2, 3]]]),
     )
-    rows = floor.dof_index[:, 2]
     for i, panel in enumerate(axes):
         if i >= n_shown:
             panel.set_visible(False)
             continue
-        w = np.where(rows >= 0, modes.shapes[np.maximum(rows, 0), i], 0.0)
-        w = w / np.abs(w).max()
+        w = modes.vertical[:, i] / np.abs(modes.vertical[:, i]).max()
         panel.tripcolor(mesh, w, cmap="RdBu_r", vmin=-1, vmax=1, shading="gouraud", rasterized=True)
         panel.set(aspect="equal", title=f"{i + 1}: {modes.frequencies[i]:.2f} Hz")
         panel.grid(visible=False)

@@ -10,12 +10,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from trundle._typing import Array
-from trundle.dynamics import Modal
 from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.results.study_result import StudyResult
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import Ramp, Route
-from trundle.simulate import Crossing, contact_forces
+from trundle.simulate import Crossing, Modal, contact_forces
 from trundle.simulate.step_limits import longest_step
 from trundle.vehicle import GRAVITY, Vehicle
 

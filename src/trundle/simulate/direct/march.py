@@ -13,14 +13,13 @@ from trundle._typing import Array
 from trundle.dynamics import Motion, Propagator, State
 from trundle.errors import UnstableStepError
 from trundle.simulate.direct.floors import ContactFloor, RigidGround
+from trundle.simulate.wheels.contacts import Springs
+from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import RoadUnderWheels
 from trundle.simulate.wheels.timeline import Timeline
 
 __all__ = [
     "ContactLaw",
-    "Progress",
-    "Record",
-    "Springs",
     "drive",
     "load_floor",
     "run_in",
@@ -29,54 +28,11 @@ __all__ = [
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Springs:
-    """Hold springs and dampers between vehicle and ground.
-
-    Attributes
-    ----------
-    contact_map : ndarray of float, shape (n_contacts, n_dofs)
-        Vehicle motion over each contact.
-    stiffness, damping, static : ndarray of float, shape (n_contacts, 1)
-        Contact springs [N/m], dampers [N s/m] and static forces [N].
-    standing_stiffness : ndarray of float, shape (n_dofs, n_dofs)
-        Vehicle stiffness on rigid ground, contact springs included [N/m].
-    """
-
-    contact_map: Float[Array, "contacts dofs"]
-    stiffness: Float[Array, "contacts 1"]
-    damping: Float[Array, "contacts 1"]
-    static: Float[Array, "contacts 1"]
-    standing_stiffness: Float[Array, "dofs dofs"]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class ContactLaw:
     """Hold a vehicle's contacts, and the vehicle beside them prepared for the time step."""
 
     springs: Springs
     vehicle: Propagator
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Record:
-    """Hold what was seen at every step, shapes (n_steps, n_points or n_contacts, n_runs).
-
-    The motion may go on behind the last force, see `drive_in_blocks`.
-    """
-
-    displacement: Float[Array, "seen points runs"]
-    velocity: Float[Array, "seen points runs"]
-    acceleration: Float[Array, "seen points runs"]
-    forces: Float[Array, "steps contacts runs"]
-
-    def columns(self, runs: slice) -> Record:
-        """Return some of the runs."""
-        return Record(
-            displacement=self.displacement[..., runs],
-            velocity=self.velocity[..., runs],
-            acceleration=self.acceleration[..., runs],
-            forces=self.forces[..., runs],
-        )
 
 
 def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[State, Array]:
@@ -123,7 +79,7 @@ def drive(
     road: RoadUnderWheels,
     *,
     progress: Progress | None = None,
-) -> Record:
+) -> Driven:
     """Step a coupled vehicle and floor over the record."""
     n_steps = len(timeline.time) - timeline.n_run_in
     state = start
@@ -143,7 +99,7 @@ def load_floor(
     *,
     static: bool,
     progress: Progress | None = None,
-) -> Record:
+) -> Driven:
     """Step a floor under known contact forces over the record."""
     n_runs = forces.shape[2]
     state = floor.start(n_runs, forces[0] if static else None)
@@ -227,9 +183,9 @@ class _Recorder:
                 time=time,
             )
 
-    def done(self) -> Record:
+    def done(self) -> Driven:
         displacement, velocity, acceleration = self._readings
-        return Record(
+        return Driven(
             displacement=displacement,
             velocity=velocity,
             acceleration=acceleration,

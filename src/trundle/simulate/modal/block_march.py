@@ -5,25 +5,26 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ThreadPoolExecutor
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 from scipy import linalg
 
+from trundle._checks import positive
+from trundle._progress import Progress
 from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import REACH, ExactRecursion
-from trundle.simulate.direct.march import Progress, Record, Springs
 from trundle.simulate.modal.blocks import Block, contact_block, load_block
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.histories import Histories
 from trundle.simulate.modal.powers import FloorPowers, VehiclePowers
 from trundle.simulate.modal.rigid_march import forces_on_rigid_ground
+from trundle.simulate.wheels.contacts import Contacts, Wheels
+from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import RoadUnderWheels
-from trundle.simulate.wheels.timeline import Timeline
 
-__all__ = ["Steps", "drive_in_blocks"]
+__all__ = ["drive_in_blocks"]
 
 _LONGEST = 32  # steps in a block; more would spend more on forming maps, fewer on applying them
 _FORCES = 192  # contact forces in a block: their system is solved densely
@@ -32,44 +33,22 @@ _ROWS = 512  # of the state, that forces are added to at a time
 _COLUMNS = 128  # runs in one product; the same whatever the machine, so that bits are too
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Steps:
-    """Hold what a drive in blocks needs of vehicle and time.
-
-    Attributes
-    ----------
-    vehicles : tuple of Springs and ExactRecursion
-        Contacts of each vehicle, and the vehicle on its contact springs.
-    springs : Springs
-        All contacts.
-    together : ExactRecursion
-        All vehicles as one system.
-    timeline : Timeline
-        Where the wheels are.
-    """
-
-    vehicles: tuple[tuple[Springs, ExactRecursion], ...]
-    springs: Springs
-    together: ExactRecursion
-    timeline: Timeline
-
-
 def drive_in_blocks(
-    steps: Steps,
+    wheels: Wheels,
     floor: ModalFloor | None,
     road: RoadUnderWheels,
     *,
     weight: Float[Array, " runs"],
     coupled: bool,
-    static: bool,
+    dt: float | None = None,
     progress: Progress | None = None,
-) -> Record:
+) -> Driven:
     """Drive every run over the floor, or over rigid ground where there is none.
 
     Parameters
     ----------
-    steps : Steps
-        Vehicle and time.
+    wheels : Wheels
+        Vehicles and time.
     floor : ModalFloor or None
         The floor.
     road : RoadUnderWheels
@@ -78,25 +57,26 @@ def drive_in_blocks(
         What part of its static wheel loads a run feels: 1, or 0 for its dynamics alone.
     coupled : bool
         Whether the floor moves under the wheels.
-    static : bool
-        Whether the record starts in static equilibrium, or after a run-in.
+    dt : float, optional
+        Time step [s]; the floor's where there is one.
     progress : callable, optional
         Told the share of steps done.
 
     Returns
     -------
-    Record
+    Driven
         Motion goes on for REACH steps behind the contact forces, under the last of them.
     """
     floor = None if floor is None else floor.for_one_drive()
+    dt = floor.dt if floor is not None else positive("dt", 0.0 if dt is None else dt)
     with ThreadPoolExecutor(n_threads()) as pool:
-        march = _March(steps, road, weight, pool)
+        march = _March(wheels, dt, road, weight, pool)
         if floor is None:
             return march.on_rigid_ground()
         if coupled:
-            march.settle(floor, loaded=static)
+            march.settle(floor, loaded=wheels.static)
         else:
-            march.rest(floor, march.forces[0] if static else None)
+            march.rest(floor, march.forces[0] if wheels.static else None)
         return march.record(floor, progress, coupled=coupled)
 
 
@@ -106,13 +86,16 @@ class _March:
     `forces` are those on rigid ground; a coupled drive puts its own in their place.
     """
 
-    def __init__(self, steps: Steps, road: RoadUnderWheels, weight: Array, pool: Executor) -> None:
-        self._steps, self._road, self._pool, self._weight = steps, road, pool, weight
-        springs = steps.springs
+    def __init__(
+        self, wheels: Wheels, dt: float, road: RoadUnderWheels, weight: Array, pool: Executor
+    ) -> None:
+        self._dt, self._road, self._pool, self._weight = dt, road, pool, weight
+        self._contacts, self._timeline = wheels.contacts, wheels.timeline
+        self._springs = springs = wheels.contacts.springs
         self._n, n_runs = len(springs.static), len(weight)
         self._slices = [slice(i, i + _COLUMNS) for i in range(0, n_runs, _COLUMNS)]
         self._length = block_length(self._n)
-        self._vehicle = _powers(springs, steps.together, self._length)
+        self._vehicle = _powers(wheels.contacts, dt, self._length)
         self.forces = self._on_rigid_ground() + springs.static * weight
         self._powers: FloorPowers
         self._zeta = np.zeros((2 * springs.contact_map.shape[1], n_runs))
@@ -122,14 +105,15 @@ class _March:
 
     def _on_rigid_ground(self) -> Array:
         """Return every vehicle's dynamic forces; none knows of the others."""
-        timeline, at = self._steps.timeline, 0
+        timeline, at = self._timeline, 0
         kept = len(self._road.push) - timeline.n_run_in
         forces = np.empty((kept, self._n, len(self._weight)))
-        for (springs, recursion), begin in zip(self._steps.vehicles, timeline.begin, strict=True):
+        for one, begin in zip(self._contacts.each, timeline.begin, strict=True):
+            springs = one.springs
             mine = slice(at, at + len(springs.static))
             at = mine.stop
             forces[:, mine] = forces_on_rigid_ground(
-                _powers(springs, recursion, self._length),
+                _powers(one, self._dt, self._length),
                 self._road.push[begin:, mine],
                 linalg.solve(
                     springs.standing_stiffness,
@@ -141,9 +125,9 @@ class _March:
             )
         return forces
 
-    def on_rigid_ground(self) -> Record:
+    def on_rigid_ground(self) -> Driven:
         """Return the forces on rigid ground, and no motion."""
-        out = Histories(None, self._steps.timeline, self.forces)
+        out = Histories(None, self._timeline, self.forces)
         out.check()
         return out.done()
 
@@ -156,7 +140,7 @@ class _March:
         if not loaded:
             self.rest(floor, None)
             return
-        springs = self._steps.springs
+        springs = self._springs
         e, k = springs.contact_map, springs.stiffness
         sink = k * floor.static_sinking()
         lift = linalg.solve(springs.standing_stiffness, e.T)
@@ -176,10 +160,10 @@ class _March:
             state = still if forces is None else floor.static_state(forces[:, part])
             self._x.append(state.astype(floor.dtype, copy=False))
 
-    def record(self, floor: ModalFloor, progress: Progress | None, *, coupled: bool) -> Record:
+    def record(self, floor: ModalFloor, progress: Progress | None, *, coupled: bool) -> Driven:
         """Carry on over the record; uncoupled forces load the floor as they are."""
         n_steps = len(self.forces)
-        out = Histories(floor, self._steps.timeline, self.forces)
+        out = Histories(floor, self._timeline, self.forces)
         out.begin(self._x)
         forming = self._form(floor, solve=coupled)
 
@@ -226,7 +210,7 @@ class _March:
 
     def _form(self, floor: ModalFloor, *, solve: bool) -> Callable[[int, int], Block]:
         """Return the function that forms the block after a step."""
-        springs = self._steps.springs
+        springs = self._springs
         columns = (springs.stiffness[:, 0], springs.damping[:, 0])
         self._powers = powers = FloorPowers(
             floor.propagator, floor.points, self._length, single=floor.dtype == np.float32
@@ -315,10 +299,11 @@ class _Work(threading.local):
         return np.matmul(a, b, out=self.array(name, (a.shape[0], b.shape[1]), a.dtype))
 
 
-def _powers(springs: Springs, vehicle: ExactRecursion, length: int) -> VehiclePowers:
+def _powers(contacts: Contacts, dt: float, length: int) -> VehiclePowers:
+    springs = contacts.springs
     e = springs.contact_map
     push = np.hstack([springs.stiffness * e, springs.damping * e])
-    return VehiclePowers(vehicle, e, push, length)
+    return VehiclePowers(ExactRecursion(contacts.standing, dt), e, push, length)
 
 
 def block_length(n_contacts: int) -> int:

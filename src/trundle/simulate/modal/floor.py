@@ -41,12 +41,12 @@ class ModalFloor:
         self.propagator, self.dt = propagator, propagator.dt
         self.n_modes = modes.n_modes
         self.speed = speed
-        self.points = np.ascontiguousarray(points @ modes.shapes)
+        self.points = np.ascontiguousarray(modes.seen(points))
         self.n_contacts = self._n = speed.shape[1]
         self._square, self.rows = modes.omega**2, rows
         # Only the route's dofs are read; together they stay in cache.
         used = rows.used_dofs()
-        self.route_shapes = np.ascontiguousarray(modes.shapes[used])
+        self.route_shapes = np.ascontiguousarray(modes.at(used))
         self._at = np.minimum(np.searchsorted(used, rows.dofs), max(0, len(used) - 1))
         self._load_share = rows.load_share.reshape(-1, self._n)
         stands = (rows.value != 0.0) | (rows.slope != 0.0)

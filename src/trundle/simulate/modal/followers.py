@@ -13,8 +13,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import ModalRecursion, following_filters
-from trundle.simulate.prepared import PreparedFloor
+from trundle.dynamics import ModalRecursion, Modes, following_filters
 
 __all__ = ["Followers", "followers_of"]
 
@@ -65,28 +64,33 @@ class Followers:
 
 
 def followers_of(
-    prepared: PreparedFloor, reader: SparseMatrix, dofs: Int[Array, " dofs"]
+    modes: Modes,
+    propagator: ModalRecursion,
+    n_stepped: int,
+    reader: SparseMatrix,
+    dofs: Int[Array, " dofs"],
 ) -> Followers | None:
     """Return the modes that are not stepped, None if all are.
 
     Parameters
     ----------
-    prepared : PreparedFloor
-        The floor with its steps.
+    modes : Modes
+        All modes.
+    propagator : ModalRecursion
+        Their steps.
+    n_stepped : int
+        How many of them are stepped.
     reader : sparse matrix, shape (n_points, n_floor_dofs)
         Where the response is read.
     dofs : ndarray of int, shape (n_dofs,)
         The route's dofs.
     """
-    modes, propagator = prepared.modes, prepared.propagator
-    if modes is None or not isinstance(propagator, ModalRecursion):
+    rest = slice(n_stepped, None)
+    if n_stepped == modes.n_modes:
         return None
-    rest = slice(prepared.n_stepped, None)
-    if rest.start == modes.n_modes:
-        return None
-    shapes = modes.shapes[:, rest]
+    late = modes.part(rest)
     return Followers(
         modes=propagator.part(rest),
-        points=np.asarray(reader @ shapes),
-        route_shapes=shapes[dofs],
+        points=late.seen(reader),
+        route_shapes=late.at(dofs),
     )

@@ -7,8 +7,8 @@ import numpy as np
 from trundle._typing import Array
 from trundle.dynamics import REACH
 from trundle.errors import UnstableStepError
-from trundle.simulate.direct.march import Record
 from trundle.simulate.modal.floor import ModalFloor
+from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.timeline import Timeline
 
 __all__ = ["Histories"]
@@ -63,9 +63,9 @@ class Histories:
             time=time,
         )
 
-    def done(self) -> Record:
+    def done(self) -> Driven:
         """Return all that was collected."""
-        return Record(
+        return Driven(
             displacement=self._motion[0],
             velocity=self._motion[1],
             acceleration=self._motion[2],

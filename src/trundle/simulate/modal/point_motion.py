@@ -21,9 +21,9 @@ from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import REACH, differentiator, image_filters, restoring_filter
 from trundle.route import ContactRows
-from trundle.simulate.direct.march import Record
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.followers import Followers
+from trundle.simulate.wheels.driven import Driven
 
 __all__ = ["PointFilters", "complete", "point_filters"]
 
@@ -80,7 +80,7 @@ def point_filters(
     return PointFilters(rows=floor.rows, dofs=floor.rows.used_dofs(), taps=taps)
 
 
-def complete(record: Record, filters: PointFilters) -> Record:
+def complete(record: Driven, filters: PointFilters) -> Driven:
     """Complete the motion at the points, whose arrays are used again.
 
     Before the record everything was at rest, or in the static state of its first step; `record`
@@ -99,7 +99,7 @@ def complete(record: Record, filters: PointFilters) -> Record:
             for _ in pool.map(finish, slices):
                 pass
     displacement, velocity, acceleration = (part[:n_steps] for part in motion)
-    return Record(
+    return Driven(
         displacement=displacement,
         velocity=velocity,
         acceleration=acceleration,

@@ -21,10 +21,11 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import Factor, Modes, factorise
+from trundle.dynamics import Factor, Modes
+from trundle.errors import InputError
 from trundle.simulate.crossing import Crossing
 from trundle.simulate.wheels.timeline import route_dofs
-from trundle.structure import Floor
+from trundle.structure import Structure
 
 __all__ = [
     "StaticFlexibility",
@@ -49,14 +50,14 @@ def unit_loads(
 
 
 class StaticFlexibility:
-    """Answer for a floor's static flexibility.
+    """Answer for a structure's static flexibility.
 
     What is asked for depends on the question and on what was covered alone, not on earlier
     questions: solutions of several right-hand sides at once differ in their last bits by which
     ones stand together.
     """
 
-    def __init__(self, floor: Floor) -> None:
+    def __init__(self, floor: Structure) -> None:
         self._floor = floor
         self._factor: Factor | None = None
         self._dofs = np.zeros(0, dtype=np.intp)
@@ -84,10 +85,23 @@ class StaticFlexibility:
             out[:, part] = self.solve(unit)[rows]
         return out
 
-    def solve(self, load: Float[Array, "all columns"]) -> Float[Array, "all columns"]:
-        """Return the static deflections under loads."""
+    @property
+    def known(self) -> bool:
+        """Whether the structure can say how it deflects; one that is known by its modes cannot."""
         if self._factor is None:
-            self._factor = factorise(self._floor.stiffness)
+            self._factor = self._floor.flexibility()
+        return self._factor is not None
+
+    def solve(self, load: Float[Array, "all columns"]) -> Float[Array, "all columns"]:
+        """Return the static deflections under loads.
+
+        Raises
+        ------
+        InputError
+            The structure is known by its modes alone.
+        """
+        if not self.known or self._factor is None:
+            raise InputError(f"{self._floor.name} is known by its modes: nothing says how it sinks")
         return self._factor.solve(load)
 
 
@@ -95,7 +109,7 @@ def residual_block(
     flexibility: StaticFlexibility, modes: Modes, dofs: Int[Array, " dofs"]
 ) -> Float[Array, "dofs dofs"]:
     """Return R between some dofs [m/N]."""
-    shapes = modes.shapes[dofs] / modes.omega
+    shapes = modes.at(dofs) / modes.omega
     return flexibility.block(dofs) - shapes @ shapes.T
 
 
@@ -104,4 +118,4 @@ def point_residual(
 ) -> Float[Array, "points dofs"]:
     """Return the rows of R that give the response at points to forces at some dofs [m/N]."""
     exact = flexibility.solve(np.ascontiguousarray(points.T.toarray())).T[:, dofs]
-    return exact - ((points @ modes.shapes) / modes.omega**2) @ modes.shapes[dofs].T
+    return exact - (modes.seen(points) / modes.omega**2) @ modes.at(dofs).T

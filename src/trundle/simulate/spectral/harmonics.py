@@ -16,7 +16,6 @@ from jaxtyping import Complex, Float
 from trundle._checks import count
 from trundle._progress import Progress
 from trundle._typing import Array
-from trundle.dynamics import Modal
 from trundle.errors import InputError
 from trundle.road import RoadClass, RoughnessBand, track_coherence, wave_power
 from trundle.simulate.crossing import Crossing
@@ -147,7 +146,7 @@ def harmonics(
         Answers to the next waves. Sums of squares over all of them are variances.
     """
     n_waves = count("n_waves", n_waves)
-    if not isinstance(layout.integration, Modal):
+    if layout.integration.f_max is None:
         raise InputError("exact statistics step the floor in its modes: choose Modal")
     sets = [
         part

@@ -18,12 +18,11 @@ from scipy import fft, sparse
 from trundle._typing import Array
 from trundle.dynamics import ModalRecursion
 from trundle.errors import InputError
-from trundle.route import ContactRows, StaticStart, contact_rows
+from trundle.route import ContactRows
+from trundle.simulate.ground import ModalReach, PreparedFloor
+from trundle.simulate.laying_out import spot_rows
 from trundle.simulate.layout import Layout
-from trundle.simulate.modal.floor import ModalFloor
-from trundle.simulate.modal.residual import unit_loads
-from trundle.simulate.prepared import PreparedFloor
-from trundle.structure import Hermite
+from trundle.structure import Spots
 
 __all__ = ["PlaceResponses", "lay_out_places"]
 
@@ -82,7 +81,7 @@ class PlaceResponses:
 def lay_out_places(
     prepared: PreparedFloor,
     layout: Layout,
-    places: Float[Array, "places 2"],
+    places: Spots,
     *,
     single: bool = True,
 ) -> PlaceResponses:
@@ -94,8 +93,8 @@ def lay_out_places(
         The floor in its modes, as the layout uses it.
     layout : Layout
         Who drives where.
-    places : ndarray of float, shape (n_places, 2)
-        Where the response is asked for [m].
+    places : Spots
+        Where the response is asked for.
     single : bool
         Compute in single precision: twice as fast, and within 1e-5.
 
@@ -104,45 +103,33 @@ def lay_out_places(
     InputError
         A floor that is not stepped in its modes, or a crossing that starts on it.
     """
-    floor, propagator = layout.floor, prepared.propagator
-    if not isinstance(floor, ModalFloor) or prepared.modes is None:
-        raise InputError("a map needs a floor in its modes: choose Modal")
-    if any(isinstance(crossing.entry, StaticStart) for crossing in layout.crossings):
+    rows = layout.rows
+    if rows is None:
+        raise InputError("a map needs a floor: rigid ground does not vibrate")
+    if layout.wheels.static:
         raise InputError("a map needs a floor at rest at time 0: let the vehicle drive in or ramp")
-    assert isinstance(propagator, ModalRecursion)  # a floor with modes has no other
-    rows, modes = floor.rows, prepared.modes
     kept = np.abs(rows.value) > _NOUGHT * np.abs(rows.value).max(initial=0.0)
     used = np.unique(rows.dofs[kept])
-    along_x = np.broadcast_to([1.0, 0.0], places.shape)
-    reading = contact_rows(prepared.floor, places, along_x, shape=Hermite())
-    reader = reading.matrix(reading.value)
-    residual = None
-    place_shapes = np.ascontiguousarray(reader @ modes.shapes)
-    if prepared.residual:
-        residual = np.empty((len(places), len(used)))
-        for part, unit in unit_loads(used, prepared.floor.n_dofs):
-            residual[:, part] = reader @ prepared.flexibility.solve(unit)
-        residual -= (place_shapes / modes.omega**2) @ modes.shapes[used].T
-    n_steps = len(layout.time)
-    dt = layout.integration.dt
+    reach = prepared.reach(used, spot_rows(prepared.floor, places))
+    n_steps, dt = len(layout.time), layout.integration.dt
     return PlaceResponses(
         dt=dt,
         n_steps=n_steps,
-        n_padded=_padded(n_steps, dt, _ringing(floor.propagator)),
-        places=places,
+        n_padded=_padded(n_steps, dt, _ringing(reach)),
+        places=places.xy,
         loads=_loads(rows, kept, used, n_steps),
-        route_shapes=np.ascontiguousarray(modes.shapes[used].T),
-        place_shapes=place_shapes,
-        residual=residual,
-        propagator=propagator,
-        n_stepped=floor.n_modes,
+        route_shapes=reach.dof_shapes,
+        place_shapes=reach.read_shapes,
+        residual=reach.residual,
+        propagator=reach.propagator,
+        n_stepped=reach.n_stepped,
         single=single,
     )
 
 
-def _ringing(propagator: ModalRecursion) -> float:
+def _ringing(reach: ModalReach) -> float:
     """Return how long the slowest mode takes to come to rest [s]."""
-    slowest = 0.5 * float(propagator.double.min())  # zeta omega
+    slowest = 0.5 * float(reach.propagator.double[: reach.n_stepped].min())  # zeta omega
     return max(_RINGING, min(-np.log(_AT_REST) / max(slowest, 1e-9), _LONGEST))
 
 

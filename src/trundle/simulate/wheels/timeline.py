@@ -10,9 +10,9 @@ from jaxtyping import Float, Int
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.route import ContactRows, StaticStart, contact_rows
+from trundle.route import ContactRows, contact_rows
 from trundle.simulate.crossing import Crossing
-from trundle.structure import ContactShape, Floor, Hermite
+from trundle.structure import ContactShape, Hermite, Structure
 
 __all__ = [
     "Timeline",
@@ -20,6 +20,7 @@ __all__ = [
     "contact_springs",
     "operator_rows",
     "route_dofs",
+    "starts_standing",
     "timeline_of",
 ]
 
@@ -51,9 +52,7 @@ class Timeline:
 
 def timeline_of(crossings: tuple[Crossing, ...], dt: float, duration: float) -> Timeline:
     """Return the timeline of all crossings, run-in first."""
-    static = [isinstance(crossing.entry, StaticStart) for crossing in crossings]
-    if any(static) and not all(static):
-        raise InputError("either every crossing starts in static equilibrium or none does")
+    starts_standing(crossings)
     starts = [_own_start(crossing, dt) for crossing in crossings]
     n_run_in = max(0, *(int(np.ceil(-start / dt - 1e-9)) for start in starts))
     n_steps = round(duration / dt)
@@ -79,9 +78,17 @@ def timeline_of(crossings: tuple[Crossing, ...], dt: float, duration: float) -> 
     )
 
 
+def starts_standing(crossings: tuple[Crossing, ...]) -> bool:
+    """Return whether all start in static equilibrium with the floor; refuse if only some do."""
+    standing = [crossing.entry.standing for crossing in crossings]
+    if any(standing) and not all(standing):
+        raise InputError("either every crossing starts in static equilibrium or none does")
+    return all(standing)
+
+
 def _own_start(crossing: Crossing, dt: float) -> float:
     """Return the time at which a vehicle begins to move, a whole number of steps [s]."""
-    if isinstance(crossing.entry, StaticStart):
+    if crossing.entry.standing:
         return 0.0
     return -float(np.ceil((crossing.run_in_time - crossing.depart) / dt - 1e-9)) * dt
 
@@ -103,7 +110,7 @@ def contact_springs(crossings: tuple[Crossing, ...]) -> tuple[Array, Array]:
     )
 
 
-def route_dofs(floor: Floor, crossings: tuple[Crossing, ...]) -> Int[Array, " dofs"]:
+def route_dofs(floor: Structure, crossings: tuple[Crossing, ...]) -> Int[Array, " dofs"]:
     """Return the dofs that wheels load on their way over a floor, rising."""
     found = []
     for crossing in crossings:
@@ -116,7 +123,7 @@ def route_dofs(floor: Floor, crossings: tuple[Crossing, ...]) -> Int[Array, " do
 
 
 def operator_rows(
-    floor: Floor, crossings: tuple[Crossing, ...], timeline: Timeline, shape: ContactShape
+    floor: Structure, crossings: tuple[Crossing, ...], timeline: Timeline, shape: ContactShape
 ) -> ContactRows:
     """Form the contact operator of every wheel at every time of the record.
 

@@ -11,10 +11,8 @@ from pydantic import Field
 
 from trundle._typing import Array
 from trundle._words import in_kmh
-from trundle.dynamics import Modal
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
-from trundle.route import StaticStart
 from trundle.structure import (
     FloorPlan,
     mesh_lines,
@@ -137,8 +135,7 @@ def _problems(given: _Checked) -> Iterator[Problem]:
         )
     method = given.method
     if method is not None and (
-        not isinstance(method.interaction.integration, Modal)
-        or isinstance(method.entry, StaticStart)
+        method.interaction.integration.f_max is None or method.entry.standing
     ):
         yield Problem(
             place="map",

@@ -6,11 +6,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Literal
 
-from trundle.dynamics import Damping, Modal, ModalRatio, Newmark, Rayleigh
+from trundle.dynamics import Damping, ModalRatio, Rayleigh
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.route import entry_named
-from trundle.simulate import Coupled, Decoupled, Integration
+from trundle.simulate import Coupled, Decoupled, Integration, Modal, Newmark
 from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import Hat, Hermite
 from trundle.study.model import Drive, MethodPlan
@@ -101,7 +101,8 @@ def methods_of(
         damping, integration = _damping(section, place), _integration(section, place)
         own = None if band is None else _own_band(section, place, band)
         found = [one for one in (damping, integration, own) if isinstance(one, Problem)]
-        if isinstance(damping, ModalRatio) and section.integration == "newmark":
+        known = None if isinstance(damping, Problem) else damping
+        if section.integration == "newmark" and known is not None and known.rayleigh is None:
             found.append(_ratio_with_newmark(place))
         if section.entry == "abrupt" and section.entry_length is not None:
             found.append(_length_of_nothing(place, section.entry_length))
@@ -254,7 +255,7 @@ def _vehicle_steps(
     vehicles = {drive.vehicle.name: drive.vehicle for drive in drives.values()}
     for method in methods.values():
         integration = method.interaction.integration
-        for vehicle in vehicles.values() if isinstance(integration, Modal) else ():
+        for vehicle in vehicles.values() if integration.f_max is not None else ():
             if problem := step_problem(vehicle, integration.dt):
                 yield Problem(
                     place=f"method {method.name!r}.dt",

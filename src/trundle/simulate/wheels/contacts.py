@@ -1,0 +1,97 @@
+"""Hold vehicles and the springs by which they touch the ground, whatever the ground is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+from scipy import sparse
+
+from trundle._typing import Array
+from trundle.dynamics import LinearSystem, block_diagonal
+from trundle.simulate.wheels.timeline import Timeline
+from trundle.vehicle import Vehicle
+
+__all__ = ["Contacts", "Springs", "Wheels"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Springs:
+    """Hold springs and dampers between vehicle and ground.
+
+    Attributes
+    ----------
+    contact_map : ndarray of float, shape (n_contacts, n_dofs)
+        Vehicle motion over each contact.
+    stiffness, damping, static : ndarray of float, shape (n_contacts, 1)
+        Contact springs [N/m], dampers [N s/m] and static forces [N].
+    standing_stiffness : ndarray of float, shape (n_dofs, n_dofs)
+        Vehicle stiffness on rigid ground, contact springs included [N/m].
+    """
+
+    contact_map: Float[Array, "contacts dofs"]
+    stiffness: Float[Array, "contacts 1"]
+    damping: Float[Array, "contacts 1"]
+    static: Float[Array, "contacts 1"]
+    standing_stiffness: Float[Array, "dofs dofs"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Contacts:
+    """Hold vehicles that drive at once, as one system.
+
+    Attributes
+    ----------
+    vehicles : tuple of Vehicle
+        The vehicles.
+    """
+
+    vehicles: tuple[Vehicle, ...]
+
+    @cached_property
+    def each(self) -> tuple[Contacts, ...]:
+        """Every vehicle by itself."""
+        return tuple(Contacts(vehicles=(vehicle,)) for vehicle in self.vehicles)
+
+    @cached_property
+    def standing(self) -> LinearSystem:
+        """The vehicles on their contact springs."""
+        return block_diagonal(tuple(vehicle.system for vehicle in self.vehicles))
+
+    @cached_property
+    def free(self) -> LinearSystem:
+        """The vehicles without their contact springs."""
+        return block_diagonal(tuple(vehicle.free_system for vehicle in self.vehicles))
+
+    @cached_property
+    def springs(self) -> Springs:
+        """All contacts."""
+        many = self.vehicles
+        return Springs(
+            contact_map=np.asarray(sparse.block_diag([v.contact_map for v in many]).toarray()),
+            stiffness=np.concatenate([v.contact_stiffness for v in many])[:, None],
+            damping=np.concatenate([v.contact_damping for v in many])[:, None],
+            static=np.concatenate([v.static_forces for v in many])[:, None],
+            standing_stiffness=np.asarray(self.standing.stiffness),
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Wheels:
+    """Hold what a drive needs of vehicles and time.
+
+    Attributes
+    ----------
+    contacts : Contacts
+        The vehicles.
+    timeline : Timeline
+        Where their wheels are.
+    static : bool
+        Whether the record starts in static equilibrium, or after a run-in.
+    """
+
+    contacts: Contacts
+    timeline: Timeline
+    static: bool

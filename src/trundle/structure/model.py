@@ -1,0 +1,85 @@
+"""Say what a simulation asks of a structure, whatever it is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+from jaxtyping import Int
+
+from trundle._progress import Progress
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import Factor, Modes
+from trundle.structure.surface import Surface
+
+__all__ = ["MirrorPlane", "Structure"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class MirrorPlane:
+    """Hold a vertical plane of symmetry, at which the modelled part of a building ends.
+
+    What stands in the plane belongs to the model by half.
+
+    Attributes
+    ----------
+    axis : int
+        Axis normal to the plane: 0 for x, 1 for y.
+    position : float
+        Where the plane cuts that axis [m].
+    """
+
+    axis: int
+    position: float
+
+
+@runtime_checkable
+class Structure(Protocol):
+    """What vehicles drive over: it vibrates in modes, deflects, and has surfaces to stand on."""
+
+    @property
+    def name(self) -> str:
+        """Name for reports."""
+        ...
+
+    @property
+    def n_dofs(self) -> int:
+        """Number of free degrees of freedom."""
+        ...
+
+    @property
+    def dof_index(self) -> Int[Array, "nodes 6"]:
+        """Row of each dof of each node among them, -1 where it is held or carries nothing."""
+        ...
+
+    @property
+    def content_hash(self) -> str:
+        """Hash of all that decides its motion; equal structures share it."""
+        ...
+
+    @property
+    def surfaces(self) -> Mapping[str, Surface]:
+        """What is driven and stood on, by name."""
+        ...
+
+    @property
+    def mirrors(self) -> tuple[MirrorPlane, ...]:
+        """Planes of symmetry at which it ends."""
+        ...
+
+    def surface(self, name: str | None = None) -> Surface:
+        """Return a surface by its name; None for the only one."""
+        ...
+
+    def modes(self, f_max: float, *, progress: Progress | None = None) -> Modes:
+        """Return all natural modes below a frequency [Hz]."""
+        ...
+
+    def flexibility(self) -> Factor | None:
+        """Return what solves for static deflections; None where only modes are known."""
+        ...
+
+    def matrices(self) -> tuple[SparseMatrix, SparseMatrix]:
+        """Return mass [kg] and stiffness [N/m]; refused by one that is known by its modes alone."""
+        ...

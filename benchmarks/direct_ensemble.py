@@ -21,7 +21,7 @@ TOGETHER = (1, 8, 64)
 
 
 def per_run(layout, n_runs: int) -> float:
-    road = roads_under_wheels(layout.crossings, layout.timeline, range(n_runs), seed=1)
+    road = roads_under_wheels(layout.sources, layout.timeline, range(n_runs), seed=1)
     layout.over(road)
     start = time.perf_counter()
     layout.over(road)

@@ -61,7 +61,7 @@ def step(prepared, kind) -> float:
     method = kind(integration=NEWMARK, damping=DAMPING)
     duration = STEPS * NEWMARK.dt
     layout = lay_out(prepared, crossing, method=method, points={"p": POINT}, duration=duration)
-    road = roads_under_wheels(layout.crossings, layout.timeline, range(1), seed=1)
+    road = roads_under_wheels(layout.sources, layout.timeline, range(1), seed=1)
     times = []
     for _ in range(5):
         start = time.perf_counter()

@@ -33,7 +33,7 @@ def kernel(layout) -> tuple[float, float]:
     spent, start, size = 0.0, time.perf_counter(), batch_size(layout)
     for first in range(0, RUNS, size):
         runs = range(first, min(first + size, RUNS))
-        road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed=1)
+        road = roads_under_wheels(layout.sources, layout.timeline, runs, seed=1)
         begun = time.perf_counter()
         layout.over(road)
         spent += time.perf_counter() - begun
@@ -80,7 +80,7 @@ def numpy_steps(layout, road):
 
 def peer() -> dict[str, float]:
     layout = rear_layout(n_modes=MODES, dt=DT, duration=PEER_STEPS * DT, residual=False)
-    road = roads_under_wheels(layout.crossings, layout.timeline, range(RUNS), seed=1)
+    road = roads_under_wheels(layout.sources, layout.timeline, range(RUNS), seed=1)
     theirs, seconds = numpy_steps(layout, road)
     recorded = drive_in_blocks(  # the peer completes no motion
         layout.wheels, layout.ground.floor, road, weight=np.ones(RUNS), coupled=True
@@ -98,7 +98,7 @@ def single() -> dict[str, float]:
         rear_layout(n_modes=MODES, dt=DT, duration=STEPS * DT, single=kind)
         for kind in (False, True)
     ]
-    road = roads_under_wheels(layouts[0].crossings, layouts[0].timeline, range(16), seed=1)
+    road = roads_under_wheels(layouts[0].sources, layouts[0].timeline, range(16), seed=1)
     double, other = (layout.over(road).acceleration for layout in layouts)
     return {
         "single_kernel_s": kernel(layouts[1])[0],

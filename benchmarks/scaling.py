@@ -30,7 +30,7 @@ def kernel_seconds(layout, n_runs: int) -> float:
     spent, size = 0.0, batch_size(layout)
     for first in range(0, n_runs, size):
         road = roads_under_wheels(
-            layout.crossings, layout.timeline, range(first, min(first + size, n_runs)), seed=1
+            layout.sources, layout.timeline, range(first, min(first + size, n_runs)), seed=1
         )
         start = time.perf_counter()
         layout.over(road)

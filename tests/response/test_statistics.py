@@ -230,7 +230,7 @@ def test_percentile_intervals_hold_what_they_say():
 
 def test_what_cannot_have_exact_statistics_is_refused(layout):
     floor = small_floor(mesh_size=2.0)
-    way = layout.crossings[0]
+    way = layout.sources[0].crossing
     direct = Coupled(integration=Newmark(dt=0.01), damping=Rayleigh(alpha=0.5, beta=1e-3))
     with pytest.raises(InputError, match="choose Modal"):
         next(harmonics(lay_out(floor, way, method=direct, points=POINTS)))

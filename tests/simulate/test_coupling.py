@@ -24,8 +24,11 @@ from trundle.simulate import (
     ensemble,
     prepare,
 )
-from trundle.simulate.wheels.roads import _Source, roads_under_wheels
-from trundle.simulate.wheels.timeline import operator_rows, timeline_of
+from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.sources.random_road import RandomRoad
+from trundle.simulate.wheels.roads import roads_under_wheels
+from trundle.simulate.wheels.standing import StandingWheels
+from trundle.simulate.wheels.timeline import timeline_of
 from trundle.structure import Hat, Hermite
 from trundle.vehicle import container_truck_40ft, library_vehicle, quarter_car
 
@@ -68,9 +71,10 @@ def monolithic(floor, crossings, method, *, seed, duration):
     convective block V H' that makes them non-symmetric.
     """
     dt = method.integration.dt
-    timeline = timeline_of(crossings, dt, duration)
-    road = roads_under_wheels(crossings, timeline, range(1), seed)
-    rows = operator_rows(floor, crossings, timeline, method.contact)
+    timeline = timeline_of(as_sources(crossings), dt, duration)
+    road = roads_under_wheels(as_sources(crossings), timeline, range(1), seed)
+    standing = StandingWheels(floor, as_sources(crossings), timeline, method.contact)
+    rows, speeds = standing.window(0, standing.n_steps)
     vehicle = crossings[0].vehicle
     n_contacts, n, nv = vehicle.n_contacts, floor.n_dofs, vehicle.system.n_dofs
     k, c = np.diag(vehicle.contact_stiffness), np.diag(vehicle.contact_damping)
@@ -89,7 +93,7 @@ def monolithic(floor, crossings, method, *, seed, duration):
         h, hs = values[pick], slopes[pick]
         share = sparse.diags_array(rows.load_share[pick])
         ht = h.T @ share
-        speed = sparse.diags_array(timeline.speed[step])
+        speed = sparse.diags_array(speeds[step])
         big_k = sparse.block_array(
             [
                 [sparse.csc_array(vehicle.system.stiffness), -e.T @ (k @ h + c @ (speed @ hs))],
@@ -222,7 +226,8 @@ def test_residual_flexibility_removes_the_truncation_error_of_the_static_part():
     assert prepared.modes.n_modes < 40
     runs = ensemble(prepared, way, method=method, points=POINTS, n_runs=1, seed=0, duration=14.0)
     step = 700  # t = 7 s: the front axle at 7 m
-    rows = operator_rows(floor, (way,), timeline_of((way,), 0.01, 14.0), Hermite())
+    timeline = timeline_of(as_sources(way), 0.01, 14.0)
+    rows = StandingWheels(floor, as_sources(way), timeline, Hermite()).whole
     n = way.vehicle.n_contacts
     load = -rows.matrix(rows.value)[step * n : (step + 1) * n].T @ way.vehicle.static_forces
     static = sparse_solver.factorise(floor.stiffness).solve(load)
@@ -319,7 +324,8 @@ def test_a_standing_start_stays_at_rest_until_the_truck_moves(integration):
     for kind in (Decoupled, Coupled):
         method = kind(integration=integration, damping=DAMPING)
         runs = ensemble(floor, way, method=method, points=POINTS, n_runs=1, seed=0, duration=2.0)
-        rows = operator_rows(floor, (way,), timeline_of((way,), 0.01, 2.0), Hermite())
+        timeline = timeline_of(as_sources(way), 0.01, 2.0)
+        rows = StandingWheels(floor, as_sources(way), timeline, Hermite()).whole
         load = -rows.matrix(rows.value)[:3].T @ way.vehicle.static_forces
         static = sparse_solver.factorise(floor.stiffness).solve(load)
         reader = contact_rows(
@@ -352,8 +358,9 @@ def test_every_method_drives_over_the_same_road():
     heights = []
     for entry, dt in ((Ramp(length=1.0), 0.02), (DriveIn(length=3.0), 0.005)):
         way = crossing(entry=entry, run_in=7.3)
-        timeline = timeline_of((way,), dt, 3.0)
-        (profile,) = _Source(way, slice(0, 1), timeline, seed=1)._profiles(0)
+        timeline = timeline_of(as_sources(way), dt, 3.0)
+        along = way.along(timeline.time, timeline.begins[0])
+        (profile,) = RandomRoad(way, way.road, along, seed=1)._profiles(0)
         heights.append(profile.at(np.linspace(-10.0, 20.0, 50))[0])
     np.testing.assert_allclose(heights[0], heights[1], rtol=1e-12)
 

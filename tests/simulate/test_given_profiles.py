@@ -11,7 +11,8 @@ from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand, synthesise
 from trundle.route import DriveIn, Route, SteadyAcceleration
 from trundle.simulate import Coupled, Crossing, Decoupled, Modal, contact_forces, ensemble
-from trundle.simulate.wheels.given_road import given_road, given_road_doubts
+from trundle.simulate.sources.given_road import given_road, given_road_doubts
+from trundle.simulate.sources.passage import as_sources
 from trundle.simulate.wheels.roads import roads_under_wheels
 from trundle.simulate.wheels.timeline import timeline_of
 from trundle.units import KMH
@@ -192,8 +193,8 @@ def test_a_polygon_of_short_sides_keeps_its_waves(x, left):
     s = np.arange(-20.0, 80.0, wave / 16)
     road = Profile.piecewise_linear(s, height * np.sin(2 * np.pi * s / wave))
     crossing = way(road, vehicle=sprung_mass(**HEAVY), speed=speed, length=60.0)
-    timeline = timeline_of((crossing,), DT, 5.0)
-    slope = given_road(crossing, timeline, slice(0, 1)).slope[:, 0]
+    timeline = timeline_of(as_sources(crossing), DT, 5.0)
+    slope = given_road(crossing, crossing.along(timeline.time, timeline.begins[0])).slope[:, 0]
     turn = np.exp(-2j * np.pi * x * np.arange(len(slope)))[:1000]
     kept = 2 * np.abs(np.mean(slope[:1000] * turn)) / (2 * np.pi * height / wave)
     assert kept == pytest.approx(left * np.sinc(1 / 16) ** 2, rel=0.006)
@@ -321,9 +322,9 @@ def test_a_named_choice_extends_a_profile(beyond):
 def test_the_road_beside_random_ones_is_the_same():
     """Exact statistics lay a given profile beside waves; it is the road that runs drive over."""
     crossing = way(rough(-120.0), band=RoughnessBand(contact_patch=0.2))
-    timeline = timeline_of((crossing,), DT, 5.0)
-    both = roads_under_wheels((crossing,), timeline, range(2), 0, smooth=1)
-    given = given_road(crossing, timeline, slice(0, 3))
+    timeline = timeline_of(as_sources(crossing), DT, 5.0)
+    both = roads_under_wheels(as_sources(crossing), timeline, range(2), 0, smooth=1)
+    given = given_road(crossing, crossing.along(timeline.time, timeline.begins[0]))
     for run in range(3):
         np.testing.assert_array_equal(both.push[..., run], both.push[..., 0])
         np.testing.assert_array_equal(both.start[:, run], given.elevation[0])

@@ -5,7 +5,7 @@ import pytest
 from trundle.road import RoadClass
 from trundle.route import Route
 from trundle.simulate import Crossing
-from trundle.simulate.vehicle_fitness import axle_hop_warnings
+from trundle.simulate.sources.axle_hop import axle_hop_warnings
 from trundle.vehicle import VEHICLES, library_vehicle, quarter_car, sprung_mass
 
 

@@ -27,9 +27,12 @@ from trundle.simulate.direct.floors import FullFloor
 from trundle.simulate.modal.block_march import drive_in_blocks
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.point_motion import complete, point_filters
+from trundle.simulate.sources.given_road import given_road
+from trundle.simulate.sources.passage import as_sources
 from trundle.simulate.wheels.contacts import Contacts, Wheels
-from trundle.simulate.wheels.roads import drawn_roads, roads_under_wheels
-from trundle.simulate.wheels.timeline import operator_rows, timeline_of
+from trundle.simulate.wheels.roads import roads_under_wheels
+from trundle.simulate.wheels.standing import StandingWheels
+from trundle.simulate.wheels.timeline import timeline_of
 from trundle.structure import Hermite
 from trundle.vehicle import container_truck_40ft, quarter_car
 
@@ -55,18 +58,17 @@ def way(vehicle):
 def laid_out(floor, crossing, method, duration):
     """Lay out production's own pieces, whose histories production does not keep."""
     prepared = prepare(floor, method.integration, method.damping)
-    timeline = timeline_of((crossing,), method.integration.dt, duration)
-    road = roads_under_wheels((crossing,), timeline, range(1), 0)
-    rows = operator_rows(floor, (crossing,), timeline, method.contact)
-    return prepared, timeline, road, rows
+    timeline = timeline_of(as_sources(crossing), method.integration.dt, duration)
+    road = roads_under_wheels(as_sources(crossing), timeline, range(1), 0)
+    standing = StandingWheels(floor, as_sources(crossing), timeline, method.contact)
+    return prepared, timeline, road, standing
 
 
 def direct_states(floor, crossing, method, duration):
     """Return floor and vehicle displacement and velocity, and forces, at every step."""
-    prepared, timeline, road, rows = laid_out(floor, crossing, method, duration)
+    prepared, timeline, road, standing = laid_out(floor, crossing, method, duration)
     carrier = FullFloor(
-        prepared.propagator, rows, timeline.speed[timeline.n_run_in :],
-        sparse.csr_array(np.eye(1, floor.n_dofs)), flexibility=prepared.flexibility, coupled=True,
+        prepared.propagator, standing, sparse.csr_array(np.eye(1, floor.n_dofs)), flexibility=prepared.flexibility, coupled=True,
     )  # fmt: skip
     law = march.ContactLaw(
         springs=Contacts(vehicles=(crossing.vehicle,)).springs,
@@ -87,17 +89,16 @@ def direct_states(floor, crossing, method, duration):
     shapes = np.eye(floor.n_dofs)
     heat = method.damping.matrix(floor.mass, floor.stiffness)
     forces = np.array([s[2][:, 0] for s in kept])
-    return (timeline, road, rows), motions, forces, (floor.mass, floor.stiffness, heat, shapes)
+    return (timeline, road, standing), motions, forces, (floor.mass, floor.stiffness, heat, shapes)
 
 
 def modal_states(floor, crossing, method, duration):
     """The same in modes: points that read ``Phi^T M u`` are the modes' own coordinates."""
-    prepared, timeline, road, rows = laid_out(floor, crossing, method, duration)
+    prepared, timeline, road, standing = laid_out(floor, crossing, method, duration)
     modes = prepared.modes
     reader = sparse.csr_array(modes.shapes.T @ floor.mass)
     carrier = ModalFloor(
-        modes, prepared.propagator, rows, timeline.speed[timeline.n_run_in :], reader,
-        flexibility=None,
+        modes, prepared.propagator, standing, reader, flexibility=None,
     )  # fmt: skip
     vehicle = ExactRecursion(crossing.vehicle.free_system, method.integration.dt)
     contacts = Contacts(vehicles=(crossing.vehicle,))
@@ -121,7 +122,7 @@ def modal_states(floor, crossing, method, duration):
     motions = [z, zd, record.displacement[:, :, 0], record.velocity[:, :, 0]]
     heat = np.diag(2 * method.damping.ratios(modes.omega) * modes.omega)
     parts = (np.eye(modes.n_modes), np.diag(modes.omega**2), heat, modes.shapes)
-    return (timeline, road, rows), motions, forces, parts
+    return (timeline, road, standing), motions, forces, parts
 
 
 def cumulative(power, dt):
@@ -142,19 +143,22 @@ def balance(vehicle, integration, damping, duration=2.4):
     crossing = way(vehicle)
     method = Coupled(integration=integration, damping=damping, contact=Hermite())
     states = direct_states if isinstance(integration, Newmark) else modal_states
-    (timeline, _, rows), (z, zd, q, qd), forces, parts = states(floor, crossing, method, duration)
+    (timeline, _, standing), (z, zd, q, qd), forces, parts = states(
+        floor, crossing, method, duration
+    )
     mass, strain, heat, shapes = parts
     dt, first = integration.dt, timeline.n_run_in
     n_c = vehicle.n_contacts
     free = vehicle.free_system
+    rows, speed = standing.window(0, standing.n_steps)
     value, slope = (rows.matrix(w) @ shapes for w in (rows.value, rows.slope))
     value, slope = (a.reshape(len(q), n_c, -1) for a in (value, slope))
-    speed = timeline.speed[first:][:, :, None]
     under = np.einsum("tcm,tm->tc", value, q)
-    drift = np.einsum("tcm,tm->tc", speed * slope, q)
+    drift = np.einsum("tcm,tm->tc", speed[:, :, None] * slope, q)
     rise = np.einsum("tcm,tm->tc", value, qd) + drift
-    _, _, elevation, grade = next(drawn_roads((crossing,), timeline, range(1), 0))
-    elevation, rate = elevation[0, first:], timeline.speed[first:] * grade[0, first:]
+    along = crossing.along(timeline.time, timeline.begins[0])
+    road = given_road(crossing, along)
+    elevation, rate = road.elevation[first:], speed * road.slope[first:]
     squeeze = under + elevation - z @ vehicle.contact_map.T
     squeeze_rate = rise + rate - zd @ vehicle.contact_map.T
 

@@ -3,9 +3,11 @@
 from trundle.route.contact import ContactRows, contact_rows
 from trundle.route.entry import Abrupt, DriveIn, Entry, Ramp, StaticStart, entry_named
 from trundle.route.path import ConstantSpeed, Route, SpeedLaw, SteadyAcceleration
+from trundle.route.track import Along, Track, follow
 
 __all__ = [
     "Abrupt",
+    "Along",
     "ConstantSpeed",
     "ContactRows",
     "DriveIn",
@@ -15,6 +17,8 @@ __all__ = [
     "SpeedLaw",
     "StaticStart",
     "SteadyAcceleration",
+    "Track",
     "contact_rows",
     "entry_named",
+    "follow",
 ]

@@ -49,6 +49,10 @@ class ContactRows:
         """Return the dofs on which any row has a weight, rising."""
         return np.unique(self.dofs[(self.value != 0.0) | (self.slope != 0.0)])
 
+    def among(self, dofs: Int[Array, " dofs"]) -> Int[Array, "rows width"]:
+        """Return where its dofs stand among some, rising; those without a weight stand anywhere."""
+        return np.minimum(np.searchsorted(dofs, self.dofs), max(0, len(dofs) - 1))
+
     def part(self, rows: slice) -> ContactRows:
         """Return some of the rows."""
         return ContactRows(

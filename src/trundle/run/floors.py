@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from trundle.dynamics import Modes
 from trundle.run.jobs import Job
 from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
+from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.wheels.standing import route_dofs
 from trundle.structure import Floor
 from trundle.study.model import MethodPlan
 
@@ -28,7 +30,8 @@ class Floors:
         """Return the floor as a job's method needs it."""
         method, interaction = job.method, job.method.interaction
         if self._routes:
-            self._flexibility.cover(tuple(self._routes.values()))
+            sources = as_sources(list(self._routes.values()))
+            self._flexibility.cover(route_dofs(self._floor, sources))
             self._routes = {}
         if self._held is None or self._held[0] is not method:
             self._held = None  # lets go of the last one's factor first

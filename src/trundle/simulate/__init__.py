@@ -2,7 +2,6 @@
 
 from trundle.dynamics import Damping, ModalRatio, Rayleigh
 from trundle.simulate.coverage import Coverage, coverage_of
-from trundle.simulate.crossing import Crossing
 from trundle.simulate.direct.method import Newmark
 from trundle.simulate.ensembles import (
     batches,
@@ -20,13 +19,10 @@ from trundle.simulate.modal.residual import StaticFlexibility
 from trundle.simulate.point_load import point_load_deflection
 from trundle.simulate.prepared import prepare
 from trundle.simulate.runs import MeanResponse, Runs
-from trundle.simulate.spectral.harmonics import (
-    Harmonics,
-    Waves,
-    harmonics,
-    mean_response,
-    place_waves,
-)
+from trundle.simulate.sources.crossing import Crossing
+from trundle.simulate.sources.source import Inputs, Source, WaveSet
+from trundle.simulate.sources.waves import Waves, place_waves
+from trundle.simulate.spectral.harmonics import Harmonics, harmonics, mean_response
 from trundle.simulate.spectral.place_spectra import place_spectra
 from trundle.simulate.spectral.places import PlaceResponses, lay_out_places
 from trundle.simulate.truncation import TruncationChange, truncation_change
@@ -39,6 +35,7 @@ __all__ = [
     "Decoupled",
     "Ground",
     "Harmonics",
+    "Inputs",
     "Integration",
     "Interaction",
     "Layout",
@@ -50,8 +47,10 @@ __all__ = [
     "PreparedFloor",
     "Rayleigh",
     "Runs",
+    "Source",
     "StaticFlexibility",
     "TruncationChange",
+    "WaveSet",
     "Waves",
     "batches",
     "contact_force_histories",

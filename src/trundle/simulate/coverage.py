@@ -9,9 +9,10 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from trundle._typing import Array
-from trundle.road import Profile
 from trundle.signals import TOP_FREQUENCY, band_edges
-from trundle.simulate.crossing import Crossing
+from trundle.simulate.sources.crossing import Crossing
+from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.sources.source import Source
 
 __all__ = ["Coverage", "coverage_of"]
 
@@ -69,29 +70,19 @@ class Coverage:
         return tuple(found)
 
 
-def coverage_of(crossings: Sequence[Crossing], ends: float) -> Coverage:
-    """Return how far a record of some crossings reaches.
+def coverage_of(sources: Sequence[Crossing | Source], ends: float) -> Coverage:
+    """Return how far a record of some sources reaches.
 
     Parameters
     ----------
-    crossings : sequence of Crossing
-        Who drives where.
+    sources : sequence of Crossing or Source
+        What drives where.
     ends : float
         Length of the record [s].
     """
+    many = as_sources(sources)
     return Coverage(
-        excited_to=min(_excited_to(crossing, ends) for crossing in crossings),
-        leaves=max(crossing.exit_time for crossing in crossings),
+        excited_to=min(source.excited_to(ends) for source in many),
+        leaves=max(source.leaves for source in many),
         ends=ends,
     )
-
-
-def _excited_to(crossing: Crossing, ends: float) -> float:
-    """Return where the waves of a road end under one vehicle [Hz]."""
-    clock = np.linspace(0.0, max(0.0, ends - crossing.depart), 201)
-    speed = float(np.max(crossing.route.law.speed(clock)))
-    if not isinstance(crossing.road, Profile):
-        return speed * crossing.band.n_max
-    apart = np.diff(crossing.road.station)
-    # samples hold no wave shorter than two of them; of a few points nobody knows what they hold
-    return speed * 0.5 / float(apart[apart > 0.0].min())

@@ -11,13 +11,15 @@ from trundle._checks import count
 from trundle._kinds import kinds_checked
 from trundle._progress import Progress
 from trundle._typing import Array
-from trundle.simulate.crossing import Crossing
 from trundle.simulate.fitness import contact_warnings
 from trundle.simulate.ground import Integration, PreparedFloor
 from trundle.simulate.interaction import Interaction
 from trundle.simulate.laying_out import Place, lay_out, lay_out_on_rigid_ground
 from trundle.simulate.layout import Layout
 from trundle.simulate.runs import MeanResponse, Runs
+from trundle.simulate.sources.crossing import Crossing
+from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.sources.source import Source
 from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import roads_under_wheels
 from trundle.simulate.wheels.timeline import Timeline, timeline_of
@@ -41,7 +43,7 @@ _MOST_RUNS = 1024  # in a batch; more would gain nothing
 @kinds_checked
 def ensemble(
     floor: Structure | PreparedFloor,
-    crossings: Crossing | Sequence[Crossing],
+    crossings: Crossing | Source | Sequence[Crossing | Source],
     *,
     method: Interaction,
     points: Mapping[str, Place],
@@ -56,8 +58,8 @@ def ensemble(
     ----------
     floor : Structure or PreparedFloor
         The floor; prepare it once where several ensembles share it.
-    crossings : Crossing or sequence of Crossing
-        One vehicle, or several at once.
+    crossings : Crossing, Source, or a sequence of them
+        One vehicle or other source, or several at once.
     method : Decoupled or Coupled
         Interaction, integration, damping and contact.
     points : mapping of str to (x, y) or Spot
@@ -126,7 +128,7 @@ def batches(
 
 def _drive(layout: Layout, runs: range, seed: int, progress: Progress | None) -> Runs:
     """Run some runs; their roads are let go of with the end of this call."""
-    road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed)
+    road = roads_under_wheels(layout.sources, layout.timeline, runs, seed)
     return _runs_of(layout, layout.over(road, progress=progress), seed)
 
 
@@ -146,7 +148,7 @@ def runs_with_mean(
     progress : callable, optional
         Told the share of steps done.
     """
-    road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed, smooth=1)
+    road = roads_under_wheels(layout.sources, layout.timeline, runs, seed, smooth=1)
     record = layout.over(road, progress=progress)
     return _runs_of(layout, record.columns(slice(0, -1)), seed), mean_of(layout, record)
 
@@ -165,7 +167,7 @@ def contact_force_histories(
     seed : int
         Seed of all roads.
     """
-    road = roads_under_wheels(layout.crossings, layout.timeline, runs, seed, smooth=1)
+    road = roads_under_wheels(layout.sources, layout.timeline, runs, seed, smooth=1)
     forces = layout.over(road).forces
     return forces[:, :, :-1], forces[:, :, -1:]
 
@@ -202,16 +204,18 @@ def _runs_of(layout: Layout, record: Driven, seed: int) -> Runs:
 
 def batch_size(layout: Layout) -> int:
     """Return how many runs 400 MB hold, a number that does not depend on the machine."""
-    return _batch_size(layout.timeline, len(layout.point_names))
+    return _batch_size(layout.timeline, len(layout.contact_names), len(layout.point_names))
 
 
 def runs_at_once(crossings: tuple[Crossing, ...], dt: float, duration: float, n_points: int) -> int:
     """Return the batch size of a layout that is not laid out yet."""
-    return _batch_size(timeline_of(crossings, dt, duration), n_points)
+    sources = as_sources(crossings)
+    contacts = sum(len(source.contact_names) for source in sources)
+    return _batch_size(timeline_of(sources, dt, duration), contacts, n_points)
 
 
-def _batch_size(timeline: Timeline, n_points: int) -> int:
-    n_all, n_contacts = timeline.station.shape
+def _batch_size(timeline: Timeline, n_contacts: int, n_points: int) -> int:
+    n_all = len(timeline.time)
     values = n_all * n_contacts + (n_all - timeline.n_run_in) * (3 * n_points + n_contacts)
     return int(np.clip(_BATCH_BYTES / (8.0 * values), LEAST_BATCH, _MOST_RUNS))
 
@@ -230,7 +234,7 @@ def contact_forces(
         Static and dynamic together, positive when pressing on the ground.
     """
     layout = lay_out_on_rigid_ground(crossing, integration, duration)
-    road = roads_under_wheels((crossing,), layout.timeline, range(n_runs), seed)
+    road = roads_under_wheels(layout.sources, layout.timeline, range(n_runs), seed)
     return layout.time, np.transpose(layout.over(road).forces, (2, 0, 1))
 
 

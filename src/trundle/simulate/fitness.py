@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
-from trundle._words import in_kmh
 from trundle.errors import FitnessWarning
-from trundle.road import FITTED_RANGE, RoadClass
-from trundle.simulate.crossing import Crossing
 from trundle.simulate.ground import PreparedFloor
-from trundle.simulate.vehicle_fitness import axle_hop_warnings
+from trundle.simulate.sources.source import Source
 from trundle.structure import ContactShape
 
 __all__ = ["LOST_CONTACT", "contact_warnings", "fitness_warnings"]
@@ -17,34 +12,34 @@ __all__ = ["LOST_CONTACT", "contact_warnings", "fitness_warnings"]
 LOST_CONTACT = "loss of contact"
 """Subject of the warning about wheels that would have to pull."""
 
-_HARMONICS = 4  # multiples of V / h that the hat function excites noticeably
-_NEAR = 0.05  # relative distance within which such a frequency counts as on a mode
-_TOP_EDGE = 89.2  # Hz: where the 80 Hz band ends
-
 
 def fitness_warnings(
-    crossings: tuple[Crossing, ...], prepared: PreparedFloor, contact: ContactShape
+    sources: tuple[Source, ...], prepared: PreparedFloor, contact: ContactShape
 ) -> tuple[FitnessWarning, ...]:
     """Return the doubts about a method on a floor, whatever the road.
 
     Parameters
     ----------
-    crossings : tuple of Crossing
+    sources : tuple of Source
         What drove.
     prepared : PreparedFloor
         The floor, as the method needs it.
     contact : ContactShape
         Interpolation of loads between nodes.
     """
-    found = [
-        *prepared.doubts(),
-        *prepared.damping.doubts(),
-        *axle_hop_warnings(crossings),
-        *(warning for crossing in crossings for warning in _extrapolation(crossing)),
+    of_sources = [
+        doubt
+        for source in sources
+        for doubt in source.doubts(prepared.floor, prepared.modes, contact)
     ]
-    if contact.kinks:
-        found += [_mesh_passing(crossing, prepared) for crossing in crossings]
-    return tuple(dict.fromkeys(found))
+    kinds = list(dict.fromkeys(_kind(doubt) for doubt in of_sources))
+    of_sources.sort(key=lambda doubt: kinds.index(_kind(doubt)))
+    return tuple(dict.fromkeys([*prepared.doubts(), *prepared.damping.doubts(), *of_sources]))
+
+
+def _kind(doubt: FitnessWarning) -> str:
+    """Return what a doubt is about, without whom."""
+    return doubt.subject.partition(",")[0]
 
 
 def contact_warnings(share: float) -> tuple[FitnessWarning, ...]:
@@ -69,36 +64,3 @@ def contact_warnings(share: float) -> tuple[FitnessWarning, ...]:
 def _percent(share: float) -> str:
     """Write a share as people do: 0.4, 12, 100."""
     return f"{100.0 * share:.1f}" if share < 0.01 else f"{100.0 * share:.0f}"
-
-
-def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
-    if not isinstance(crossing.road, RoadClass):
-        return []
-    speed = float(crossing.route.law.speed(0.0))
-    n_max = crossing.band.n_max
-    if n_max > FITTED_RANGE[1] * (1 + 1e-9):
-        message = (
-            f"waves to {n_max:.3g} cycle/m are beyond ISO 8608's fitted range "
-            f"({FITTED_RANGE[1]:g}); the road above {speed * FITTED_RANGE[1]:.3g} Hz at "
-            f"{in_kmh(speed)} is extrapolated"
-        )
-    else:
-        message = (
-            f"waves end at {n_max:.3g} cycle/m, which is {speed * n_max:.3g} Hz at "
-            f"{in_kmh(speed)}; the road excites nothing above it, and bands there are not "
-            f"assessed: n_max = {_TOP_EDGE / speed:.3g} 1/m with a contact patch reaches 80 Hz"
-        )
-    return [FitnessWarning(subject=f"roughness band, {crossing.route.name}", message=message)]
-
-
-def _mesh_passing(crossing: Crossing, prepared: PreparedFloor) -> FitnessWarning:
-    size = prepared.floor.surface(crossing.route.on).element_size
-    speed = float(crossing.route.law.speed(0.0))
-    passing = speed / size * np.arange(1, _HARMONICS + 1)
-    note = f"hat functions of {size:.3g} m are passed at {speed / size:.3g} Hz and its multiples"
-    if prepared.modes is not None:
-        f = prepared.modes.frequencies[:, None]
-        hits = np.unique(np.round(passing[(np.abs(f - passing) < _NEAR * f).any(axis=0)], 2))
-        if hits.size:
-            note += "; " + ", ".join(f"{hit:g} Hz" for hit in hits) + " lies on a mode"
-    return FitnessWarning(subject=f"mesh passing, {crossing.route.name}", message=note)

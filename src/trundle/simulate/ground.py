@@ -17,11 +17,11 @@ from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Damping, ModalRecursion, Modes
 from trundle.errors import FitnessWarning
-from trundle.route import ContactRows
 from trundle.simulate.modal.residual import StaticFlexibility
 from trundle.simulate.wheels.contacts import Wheels
 from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import RoadUnderWheels
+from trundle.simulate.wheels.standing import StandingWheels
 from trundle.structure import Structure
 from trundle.vehicle import Vehicle
 
@@ -119,14 +119,7 @@ class PreparedFloor(Protocol):
         """Return what a result must say of step and modes."""
         ...
 
-    def under(
-        self,
-        rows: ContactRows,
-        speed: Float[Array, "steps contacts"],
-        reader: SparseMatrix,
-        *,
-        coupled: bool,
-    ) -> Ground:
+    def under(self, standing: StandingWheels, reader: SparseMatrix, *, coupled: bool) -> Ground:
         """Lie under wheels; `reader` (n_points, n_dofs) is where the response is read."""
         ...
 

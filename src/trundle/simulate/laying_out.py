@@ -15,14 +15,16 @@ from trundle._typing import SparseMatrix
 from trundle.dynamics import ModalRatio
 from trundle.errors import InputError
 from trundle.route import contact_rows
-from trundle.simulate.crossing import TAIL, Crossing
 from trundle.simulate.fitness import fitness_warnings
 from trundle.simulate.ground import Integration, PreparedFloor
 from trundle.simulate.interaction import Decoupled, Interaction
 from trundle.simulate.layout import Layout
 from trundle.simulate.prepared import prepare
-from trundle.simulate.wheels.given_road import given_road_doubts
-from trundle.simulate.wheels.timeline import operator_rows, timeline_of
+from trundle.simulate.sources.crossing import TAIL, Crossing
+from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.sources.source import Source
+from trundle.simulate.wheels.standing import StandingWheels
+from trundle.simulate.wheels.timeline import timeline_of
 from trundle.structure import Hermite, Spot, Spots, Structure
 
 __all__ = ["Place", "lay_out", "lay_out_on_rigid_ground", "point_rows", "spot_rows"]
@@ -34,7 +36,7 @@ Place: TypeAlias = tuple[float, float] | Spot
 @kinds_checked
 def lay_out(
     floor: Structure | PreparedFloor,
-    crossings: Crossing | Sequence[Crossing],
+    crossings: Crossing | Source | Sequence[Crossing | Source],
     *,
     method: Interaction,
     points: Mapping[str, Place],
@@ -46,8 +48,8 @@ def lay_out(
     ----------
     floor : Structure or PreparedFloor
         The floor; prepare it once where several layouts share it.
-    crossings : Crossing or sequence of Crossing
-        One vehicle, or several at once.
+    crossings : Crossing, Source, or a sequence of them
+        One vehicle or other source, or several at once.
     method : Decoupled or Coupled
         Interaction, integration, damping and contact.
     points : mapping of str to (x, y) or Spot
@@ -60,50 +62,50 @@ def lay_out(
     InputError
         A point or wheel off the floor, no point or no crossing, a floor prepared otherwise.
     """
-    many = (crossings,) if isinstance(crossings, Crossing) else tuple(crossings)
-    if not many:
+    sources = as_sources(crossings)
+    if not sources:
         raise InputError("an ensemble needs at least one crossing")
     if not points:
         raise InputError("name at least one point where the response is to be read")
-    _check_vehicles(many, method.integration)
-    doubts = given_road_doubts(many, method.integration.dt, duration)
+    dt = method.integration.dt
+    _check_vehicles(sources, method.integration)
+    doubts = [doubt for source in sources for doubt in source.check(dt, duration)]
     if not isinstance(floor, PreparedFloor):
         floor = prepare(floor, method.integration, method.damping)
     _check_prepared(floor, method)
-    length = duration if duration is not None else _natural_duration(many)
-    timeline = timeline_of(many, method.integration.dt, positive("duration", length))
-    rows = operator_rows(floor.floor, many, timeline, method.contact)
+    length = duration if duration is not None else _natural_duration(sources)
+    timeline = timeline_of(sources, dt, positive("duration", length))
+    rows = StandingWheels(floor.floor, sources, timeline, method.contact)
     if not len(rows.used_dofs()):
         raise InputError(
             "no wheel loads the floor at any step: the route runs along an edge that is held, or "
             "is shorter than a step; move it onto the floor, or lengthen it"
         )
-    speed = timeline.speed[timeline.n_run_in :]
-    reader = point_rows(floor.floor, points)
     layout = Layout(
-        crossings=many,
+        sources=sources,
         method=method,
-        doubts=(*fitness_warnings(many, floor, method.contact), *doubts),
+        doubts=(*fitness_warnings(sources, floor, method.contact), *doubts),
         point_names=tuple(points),
         timeline=timeline,
         rows=rows,
-        ground=floor.under(rows, speed, reader, coupled=method.moves),
+        ground=floor.under(rows, point_rows(floor.floor, points), coupled=method.moves),
     )
     layout.ground.check(layout.wheels)
     return layout
 
 
 def lay_out_on_rigid_ground(
-    crossing: Crossing, integration: Integration, duration: float
+    crossing: Crossing | Source, integration: Integration, duration: float
 ) -> Layout:
     """Lay out a crossing over rigid ground."""
-    _check_vehicles((crossing,), integration)
+    sources = as_sources(crossing)
+    _check_vehicles(sources, integration)
     return Layout(
-        crossings=(crossing,),
+        sources=sources,
         method=Decoupled(integration=integration, damping=ModalRatio(ratio=0.0)),
         doubts=(),
         point_names=(),
-        timeline=timeline_of((crossing,), integration.dt, duration),
+        timeline=timeline_of(sources, integration.dt, duration),
         rows=None,
         ground=integration.rigid(),
     )
@@ -128,9 +130,10 @@ def _by_surface(points: Mapping[str, Place]) -> Iterator[Spots]:
         yield Spots(xy=np.array([(spot.x, spot.y) for spot in some]), on=on)
 
 
-def _check_vehicles(crossings: tuple[Crossing, ...], integration: Integration) -> None:
-    for crossing in crossings:
-        integration.check_vehicle(crossing.vehicle, level=crossing.start == "level")
+def _check_vehicles(sources: tuple[Source, ...], integration: Integration) -> None:
+    for source in sources:
+        if source.oscillator is not None:
+            integration.check_vehicle(source.oscillator, level=source.level)
 
 
 def _check_prepared(prepared: PreparedFloor, method: Interaction) -> None:
@@ -141,8 +144,8 @@ def _check_prepared(prepared: PreparedFloor, method: Interaction) -> None:
         )
 
 
-def _natural_duration(crossings: tuple[Crossing, ...]) -> float:
-    last = max(crossing.exit_time for crossing in crossings)
+def _natural_duration(sources: tuple[Source, ...]) -> float:
+    last = max(source.leaves for source in sources)
     if not np.isfinite(last):
         raise InputError("a vehicle stops on its route; give a duration")
     return last + TAIL

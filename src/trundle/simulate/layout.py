@@ -12,14 +12,14 @@ from threadpoolctl import ThreadpoolController
 from trundle._progress import Progress
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
-from trundle.route import ContactRows
 from trundle.simulate.coverage import Coverage, coverage_of
-from trundle.simulate.crossing import Crossing
 from trundle.simulate.ground import Ground, Integration
 from trundle.simulate.interaction import Interaction
+from trundle.simulate.sources.source import Source
 from trundle.simulate.wheels.contacts import Contacts, Wheels
 from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import RoadUnderWheels
+from trundle.simulate.wheels.standing import StandingWheels
 from trundle.simulate.wheels.timeline import Timeline, starts_standing
 
 __all__ = ["Layout"]
@@ -31,8 +31,8 @@ class Layout:
 
     Attributes
     ----------
-    crossings : tuple of Crossing
-        Who drives where.
+    sources : tuple of Source
+        What drives where.
     method : Decoupled or Coupled
         By what method.
     doubts : tuple of FitnessWarning
@@ -41,18 +41,18 @@ class Layout:
         Where the response is read.
     timeline : Timeline
         Where the wheels are.
-    rows : ContactRows or None
+    rows : StandingWheels or None
         How they stand on the floor; None on rigid ground.
     ground : Ground
         What lies under them.
     """
 
-    crossings: tuple[Crossing, ...]
+    sources: tuple[Source, ...]
     method: Interaction
     doubts: tuple[FitnessWarning, ...]
     point_names: tuple[str, ...]
     timeline: Timeline
-    rows: ContactRows | None
+    rows: StandingWheels | None
     ground: Ground
 
     @property
@@ -62,13 +62,11 @@ class Layout:
 
     @property
     def contact_names(self) -> tuple[str, ...]:
-        """All contacts by name, with their route's where several drive."""
-        if len(self.crossings) == 1:
-            return self.crossings[0].vehicle.contact_names
+        """All contacts by name, with their source's where there are several."""
+        if len(self.sources) == 1:
+            return self.sources[0].contact_names
         return tuple(
-            f"{crossing.route.name} {name}"
-            for crossing in self.crossings
-            for name in crossing.vehicle.contact_names
+            f"{source.name} {name}" for source in self.sources for name in source.contact_names
         )
 
     @property
@@ -79,20 +77,20 @@ class Layout:
     @property
     def coverage(self) -> Coverage:
         """Which bands the roads excite, and whether the vehicles have left at the end."""
-        return coverage_of(self.crossings, float(self.time[-1]))
+        return coverage_of(self.sources, float(self.time[-1]))
 
     @property
     def time(self) -> Float[Array, " steps"]:
         """Time of the record [s]."""
-        return self.timeline.time[self.timeline.n_run_in :]
+        return self.timeline.record
 
     @cached_property
     def wheels(self) -> Wheels:
         """Vehicles and time."""
         return Wheels(
-            contacts=Contacts(vehicles=tuple(crossing.vehicle for crossing in self.crossings)),
+            contacts=Contacts.of(self.sources),
             timeline=self.timeline,
-            static=starts_standing(self.crossings),
+            static=starts_standing(self.sources),
         )
 
     def with_modes_below(self, f: float) -> Layout:

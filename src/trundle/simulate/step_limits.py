@@ -67,7 +67,7 @@ def check_contact_loop(floor: ModalFloor, contacts: Contacts, n_steps: int) -> N
             continue
         value, slope = (part[0] for part in floor.shapes(step, step + 1))
         load = floor.loads(step, step + 1)[0]
-        on_displacement = k * value + c * floor.speed[step][:, None] * slope
+        on_displacement = k * value + c * floor.speeds(step, step + 1)[0][:, None] * slope
         pushed = (on_displacement * displacement + c * value * velocity) @ load.T
         residual = floor.residual_sinking(step, step + 1)
         if residual is not None:

@@ -63,7 +63,7 @@ def truncation_change(
     top *= within("share", share, 0.0, 1.0)
     fewer = layout.with_modes_below(top)
     some = numbers[:_RUNS]
-    road = roads_under_wheels(layout.crossings, layout.timeline, some, runs.seed)
+    road = roads_under_wheels(layout.sources, layout.timeline, some, runs.seed)
     record = fewer.over(road)
     n = len(some)
     return TruncationChange(

@@ -13,7 +13,7 @@ from trundle.road import RoadClass, RoughnessBand
 from trundle.route import ConstantSpeed, Entry, Route
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
-from trundle.simulate.crossing import TAIL
+from trundle.simulate.sources.crossing import TAIL
 from trundle.structure import Floor, FloorPlan
 from trundle.study.map_plan import MapPlan
 from trundle.vehicle import Vehicle

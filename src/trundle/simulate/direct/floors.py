@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Protocol, TypeAlias, runtime_checkable
+from copy import copy
+from typing import NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
-from jaxtyping import Float
 from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import HalfSolve, HalfStep, Motion, NewmarkPropagator, State
-from trundle.route import ContactRows
 from trundle.simulate.modal.residual import StaticFlexibility, unit_loads
+from trundle.simulate.wheels.standing import StandingWheels
 
 __all__ = ["ContactFloor", "FullFloor", "RigidGround"]
 
+_WINDOW = 256  # steps whose rows are formed at once
 _MOST_ELEMENTS = 256  # whose half solutions are kept, each some hundred kilobytes
 
 Prediction: TypeAlias = Motion | HalfStep
@@ -118,6 +119,16 @@ def _spread(weights: Array) -> Array:
     return out.reshape(n, n * width)
 
 
+class _Under(NamedTuple):
+    """What is under the wheels: dofs, weights, share of the load, and the wheels' speeds."""
+
+    dofs: Array
+    value: Array
+    slope: Array
+    load_share: Array
+    speed: Array
+
+
 class FullFloor:
     """A floor in all its dofs, integrated directly.
 
@@ -130,8 +141,7 @@ class FullFloor:
     def __init__(
         self,
         propagator: NewmarkPropagator,
-        rows: ContactRows,
-        speed: Float[Array, "steps contacts"],
+        standing: StandingWheels,
         points: SparseMatrix,
         *,
         flexibility: StaticFlexibility,
@@ -139,13 +149,9 @@ class FullFloor:
     ) -> None:
         self._propagator, self._points = propagator, points
         self._static = flexibility
-        self._speed, self._n_dofs = speed, rows.n_dofs
-        self._n, self._width = speed.shape[1], rows.dofs.shape[1]
-        shape = (-1, self._n, self._width)
-        self._dofs = rows.dofs.reshape(shape)
-        self._value, self._slope = rows.value.reshape(shape), rows.slope.reshape(shape)
-        self._load_share = rows.load_share.reshape(-1, self._n)
-        self._route_dofs = rows.used_dofs()
+        self._standing, self._n_dofs = standing, standing.n_dofs
+        self._n, self._route_dofs = standing.n_contacts, standing.used_dofs()
+        self._first, self._window = 0, self._form(0)
         self._gathered_at = np.zeros(0, dtype=np.intp)
         self._gathered = np.zeros((0, 0))
         self._half_elements: dict[bytes, tuple[Array, Array]] = {}
@@ -160,6 +166,12 @@ class FullFloor:
             self._unit = self._unit_solutions()
             self._unit_at_route = self._unit[:, self._route_dofs]
 
+    def for_one_drive(self) -> FullFloor:
+        """Return the floor with rooms of its own; two drives at once do not share them."""
+        own = copy(self)
+        own._half_elements, own._gathered_at = {}, np.zeros(0, dtype=np.intp)
+        return own
+
     def start(self, n_runs: int, forces: Array | None) -> State:
         """Return the state at rest, deflected by static forces if given."""
         u = np.zeros((self._n_dofs, n_runs))
@@ -170,7 +182,7 @@ class FullFloor:
     def static_sinking(self) -> Array:
         """Return the static sinking under wheel i for a unit force of wheel j."""
         unit = self._static.solve(self._load(0, np.eye(self._n)))
-        return -np.einsum("cw,cwj->cj", self._value[0], unit[self._dofs[0]])
+        return -np.einsum("cw,cwj->cj", self._at(0).value, unit[self._at(0).dofs])
 
     def predict(self, step: int, state: State, forces: Array | None) -> Prediction:
         """Return the motion at the step's end under known contact forces."""
@@ -181,32 +193,33 @@ class FullFloor:
     def under_wheels(self, step: int, motion: Prediction, before: Array) -> tuple[Array, Array]:
         """Return the floor's height and its rate under each moving wheel."""
         del before
-        dofs = self._dofs[step]
+        dofs = self._at(step).dofs
         u, v = motion.displacement[dofs], motion.velocity[dofs]
         if isinstance(motion, HalfStep):
             halves = [self._half_under_wheel(step, wheel) for wheel in range(self._n)]
             found = np.array([unit @ motion.forward[rows] for rows, unit in halves])
             found += motion.past[dofs]
             u, v = found, v + self._propagator.a1 * (found - u)
-        value, slope = self._value[step][:, None, :], self._slope[step][:, None, :]
+        value, slope = self._at(step).value[:, None, :], self._at(step).slope[:, None, :]
         height, rate = (value @ u)[:, 0], (value @ v)[:, 0]
-        return height, rate + self._speed[step][:, None] * (slope @ u)[:, 0]
+        return height, rate + self._at(step).speed[:, None] * (slope @ u)[:, 0]
 
     def compliance(self, step: int) -> tuple[Array, Array]:
         """Return the sinking and its rate under wheel i for a unit force of wheel j."""
-        value, slope = (_spread(weights[step]) for weights in (self._value, self._slope))
+        under = self._at(step)
+        value, slope = _spread(under.value), _spread(under.slope)
         at = self._places(step)
         unit = self._unit_at_route[np.ix_(at, at)]
-        pressed = unit @ value.T * self._load_share[step]
+        pressed = unit @ value.T * self._at(step).load_share
         sinking = value @ pressed
-        convective = self._speed[step][:, None] * (slope @ pressed)
+        convective = self._at(step).speed[:, None] * (slope @ pressed)
         return sinking, self._propagator.a1 * sinking + convective
 
     def finish(
         self, step: int, state: State, motion: Prediction, forces: Array, *, applied: bool
     ) -> State:
         """Return the state at the step's end."""
-        load = _spread(self._value[step]).T @ (self._load_share[step][:, None] * forces)
+        load = _spread(self._at(step).value).T @ (self._at(step).load_share[:, None] * forces)
         if isinstance(motion, HalfStep):
             assert self._halves is not None  # only they leave a step half done
             for wheel, force in enumerate(np.split(load, self._n)):
@@ -241,8 +254,9 @@ class FullFloor:
 
     def _load(self, step: int, forces: Array) -> Array:
         load = np.zeros((self._n_dofs, forces.shape[1]))
-        shared = self._load_share[step][:, None] * forces
-        np.subtract.at(load, self._dofs[step], self._value[step][:, :, None] * shared[:, None, :])
+        under = self._at(step)
+        shared = under.load_share[:, None] * forces
+        np.subtract.at(load, under.dofs, under.value[:, :, None] * shared[:, None, :])
         return load
 
     def _half_under_wheel(self, step: int, wheel: int) -> tuple[Array, Array]:
@@ -250,7 +264,7 @@ class FullFloor:
 
         Wheels that follow each other over an element share them.
         """
-        at = self._places(step)[wheel * self._width : (wheel + 1) * self._width]
+        at = np.split(self._places(step), self._n)[wheel]
         key = at.tobytes()
         if key not in self._half_elements:
             if len(self._half_elements) > _MOST_ELEMENTS:
@@ -270,5 +284,19 @@ class FullFloor:
 
     def _places(self, step: int) -> Array:
         """Return where the wheels' dofs stand among the route's; unused ones point anywhere."""
-        at = np.searchsorted(self._route_dofs, self._dofs[step].ravel())
+        at = np.searchsorted(self._route_dofs, self._at(step).dofs.ravel())
         return np.minimum(at, len(self._route_dofs) - 1)
+
+    def _at(self, step: int) -> _Under:
+        """Return what is under the wheels at a step."""
+        if not self._first <= step < self._first + len(self._window.dofs):
+            self._first = step - step % _WINDOW
+            self._window = self._form(self._first)
+        return _Under(*(part[step - self._first] for part in self._window))
+
+    def _form(self, start: int) -> _Under:
+        stop = min(start + _WINDOW, self._standing.n_steps)
+        rows, speed = self._standing.window(start, stop)
+        shape = (len(speed), self._n, -1)
+        dofs, value, slope = (p.reshape(shape) for p in (rows.dofs, rows.value, rows.slope))
+        return _Under(dofs, value, slope, rows.load_share.reshape(shape[:2]), speed)

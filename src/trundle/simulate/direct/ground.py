@@ -86,7 +86,7 @@ class FullGround:
         progress: Progress | None = None,
     ) -> Driven:
         """Carry the wheels over the record, step by step."""
-        timeline, floor = wheels.timeline, self.floor
+        timeline, floor = wheels.timeline, self.floor.for_one_drive()
         if not self.coupled:
             rigid = RigidForNewmark(integration=self.integration)
             forces = rigid.drive(wheels, road, weight=weight).forces

@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
 from trundle._checks import positive, set_frozen, within
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Damping, LinearSystem, Modes, NewmarkPropagator
 from trundle.errors import FitnessWarning, InputError
-from trundle.route import ContactRows
 from trundle.signals import TOP_FREQUENCY
 from trundle.simulate.direct.floors import FullFloor
 from trundle.simulate.direct.ground import FullGround, RigidForNewmark
 from trundle.simulate.ground import ModalReach
 from trundle.simulate.modal.residual import StaticFlexibility
+from trundle.simulate.wheels.standing import StandingWheels
 from trundle.structure import Structure
 from trundle.vehicle import Vehicle
 
@@ -177,17 +176,10 @@ class FloorInFull:
         """Return what a result must say of the step."""
         return self.integration.doubts()
 
-    def under(
-        self,
-        rows: ContactRows,
-        speed: Float[Array, "steps contacts"],
-        reader: SparseMatrix,
-        *,
-        coupled: bool,
-    ) -> FullGround:
+    def under(self, standing: StandingWheels, reader: SparseMatrix, *, coupled: bool) -> FullGround:
         """Lie under wheels."""
         floor = FullFloor(
-            self.propagator, rows, speed, reader, flexibility=self.flexibility, coupled=coupled
+            self.propagator, standing, reader, flexibility=self.flexibility, coupled=coupled
         )
         return FullGround(floor=floor, integration=self.integration, coupled=coupled)
 

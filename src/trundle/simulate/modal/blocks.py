@@ -230,7 +230,7 @@ def _contact_rows(
 ) -> Array:
     """Return what the floor's state pushes at contacts: (2, steps, standing, modes)."""
     value, slope = (part[:, on_floor] for part in floor.shapes(first + 1, first + n_steps + 1))
-    speed = floor.speed[first + 1 : first + n_steps + 1, on_floor, None]
+    speed = floor.speeds(first + 1, first + n_steps + 1)[:, on_floor, None]
     k, c = (values[on_floor, None] for values in springs)
     return np.stack([k * value + (c * speed) * slope, c * value])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -10,12 +11,21 @@ from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import ModalRecursion, Modes
-from trundle.route import ContactRows
 from trundle.simulate.modal.residual import StaticFlexibility, residual_block
+from trundle.simulate.wheels.standing import StandingWheels
 
 __all__ = ["ModalFloor"]
 
 _CHUNK = 256  # steps whose contact shapes are formed at once
+
+
+class _Under(NamedTuple):
+    """What is under the wheels at some steps: (n_steps, n_contacts) and, of shapes, n_modes."""
+
+    value: Array
+    slope: Array
+    load_share: Array
+    speed: Array
 
 
 class ModalFloor:
@@ -30,8 +40,7 @@ class ModalFloor:
         self,
         modes: Modes,
         propagator: ModalRecursion,
-        rows: ContactRows,
-        speed: Float[Array, "steps contacts"],
+        standing: StandingWheels,
         points: SparseMatrix,
         *,
         flexibility: StaticFlexibility | None,
@@ -39,22 +48,15 @@ class ModalFloor:
     ) -> None:
         self.dtype = np.dtype(np.float32 if single else np.float64)
         self.propagator, self.dt = propagator, propagator.dt
-        self.n_modes = modes.n_modes
-        self.speed = speed
+        self.n_modes, self.n_contacts = modes.n_modes, standing.n_contacts
+        self.standing = standing
         self.points = np.ascontiguousarray(modes.seen(points))
-        self.n_contacts = self._n = speed.shape[1]
-        self._square, self.rows = modes.omega**2, rows
+        self._square = modes.omega**2
         # Only the route's dofs are read; together they stay in cache.
-        used = rows.used_dofs()
-        self.route_shapes = np.ascontiguousarray(modes.at(used))
-        self._at = np.minimum(np.searchsorted(used, rows.dofs), max(0, len(used) - 1))
-        self._load_share = rows.load_share.reshape(-1, self._n)
-        stands = (rows.value != 0.0) | (rows.slope != 0.0)
-        self._stands = stands.any(axis=1).reshape(-1, self._n)
-        self._chunks: dict[int, tuple[Array, Array]] = {}
-        self._residual = (
-            None if flexibility is None else _Residual(rows, self._n, modes, flexibility)
-        )
+        self._used = standing.used_dofs()
+        self.route_shapes = np.ascontiguousarray(modes.at(self._used))
+        self._chunks: dict[int, _Under] = {}
+        self._residual = None if flexibility is None else _Residual(standing, modes, flexibility)
 
     def for_one_drive(self) -> ModalFloor:
         """Return the floor with room of its own for shapes; two drives at once do not share it."""
@@ -85,6 +87,41 @@ class ModalFloor:
 
     def shapes(self, start: int, stop: int) -> tuple[Array, Array]:
         """Return mode shapes and slopes under the wheels, (n_steps, n_contacts, n_modes)."""
+        under = self._under(start, stop)
+        return under.value, under.slope
+
+    def speeds(self, start: int, stop: int) -> Float[Array, "steps contacts"]:
+        """Return the speeds of the wheels [m/s]."""
+        return self._under(start, stop).speed
+
+    def on_floor(self, start: int, stop: int) -> Int[Array, " standing"]:
+        """Return the contacts that stand on the floor at some of these steps."""
+        return np.flatnonzero(self.standing.stands[start:stop].any(axis=0))
+
+    def loads(self, start: int, stop: int, wheels: Int[Array, " wheels"] | None = None) -> Array:
+        """Return the modal load of a unit force of each wheel, (n_steps, n_wheels, n_modes)."""
+        under = self._under(start, stop)
+        value, share = under.value, under.load_share[:, :, None]
+        return value * share if wheels is None else value[:, wheels] * share[:, wheels]
+
+    def residual_sinking(self, start: int, stop: int) -> Array | None:
+        """Return what the modes left out add to the sinking, (n_steps, n_contacts, n_contacts)."""
+        return None if self._residual is None else self._residual.sinking(start, stop)
+
+    def static_sinking(self) -> Array:
+        """Return the static sinking under wheel i for a unit force of wheel j, at time 0."""
+        under = self._under(0, 1)
+        sinking = (under.value[0] / self._square) @ under.value[0].T * under.load_share[0]
+        residual = self.residual_sinking(0, 1)
+        return sinking if residual is None else sinking + residual[0]
+
+    def static_state(self, forces: Float[Array, "contacts runs"]) -> Float[Array, "state runs"]:
+        """Return the state at rest under static forces of the wheels at time 0."""
+        q = -(self.loads(0, 1)[0].T @ forces) / self._square[:, None]
+        return np.vstack([q, np.zeros_like(q)])
+
+    def _under(self, start: int, stop: int) -> _Under:
+        """Return what is under the wheels; chunks behind `start` are let go of."""
         first, last = start // _CHUNK, (stop - 1) // _CHUNK
         for number in [number for number in self._chunks if number < first]:
             del self._chunks[number]
@@ -97,60 +134,30 @@ class ModalFloor:
             here = slice(max(0, start - at), min(_CHUNK, stop - at))
             parts.append([values[here] for values in self._chunks[number]])
         if len(parts) == 1:
-            return parts[0][0], parts[0][1]
-        value, slope = (np.concatenate(pair) for pair in zip(*parts, strict=True))
-        return value, slope
+            return _Under(*parts[0])
+        return _Under(*(np.concatenate(values) for values in zip(*parts, strict=True)))
 
-    def on_floor(self, start: int, stop: int) -> Int[Array, " standing"]:
-        """Return the contacts that stand on the floor at some of these steps."""
-        return np.flatnonzero(self._stands[start:stop].any(axis=0))
-
-    def loads(self, start: int, stop: int, wheels: Int[Array, " wheels"] | None = None) -> Array:
-        """Return the modal load of a unit force of each wheel, (n_steps, n_wheels, n_modes)."""
-        value, _ = self.shapes(start, stop)
-        share = self._load_share[start:stop, :, None]
-        return value * share if wheels is None else value[:, wheels] * share[:, wheels]
-
-    def residual_sinking(self, start: int, stop: int) -> Array | None:
-        """Return what the modes left out add to the sinking, (n_steps, n_contacts, n_contacts)."""
-        return None if self._residual is None else self._residual.sinking(start, stop)
-
-    def static_sinking(self) -> Array:
-        """Return the static sinking under wheel i for a unit force of wheel j, at time 0."""
-        value, _ = self.shapes(0, 1)
-        sinking = (value[0] / self._square) @ value[0].T * self._load_share[0]
-        residual = self.residual_sinking(0, 1)
-        return sinking if residual is None else sinking + residual[0]
-
-    def static_state(self, forces: Float[Array, "contacts runs"]) -> Float[Array, "state runs"]:
-        """Return the state at rest under static forces of the wheels at time 0."""
-        q = -(self.loads(0, 1)[0].T @ forces) / self._square[:, None]
-        return np.vstack([q, np.zeros_like(q)])
-
-    def _chunk(self, start: int) -> tuple[Array, Array]:
-        part = slice(start * self._n, (start + _CHUNK) * self._n)
-        weights = np.concatenate([self.rows.value[part], self.rows.slope[part]])
-        at = np.concatenate([self._at[part]] * 2)
+    def _chunk(self, start: int) -> _Under:
+        stop = min(start + _CHUNK, self.standing.n_steps)
+        rows, speed = self.standing.window(start, stop)
+        weights = np.concatenate([rows.value, rows.slope])
+        at = np.concatenate([rows.among(self._used)] * 2)
         starts = np.arange(0, at.size + 1, at.shape[1])
         shape = (len(at), len(self.route_shapes))
         matrix = sparse.csr_array((weights.ravel(), at.ravel(), starts), shape=shape)
         matrix.eliminate_zeros()  # wheels that are not on the floor
-        both = (matrix @ self.route_shapes).reshape(2, -1, self._n, self.n_modes)
-        return both[0], both[1]
+        both = (matrix @ self.route_shapes).reshape(2, -1, self.n_contacts, self.n_modes)
+        return _Under(both[0], both[1], rows.load_share.reshape(-1, self.n_contacts), speed)
 
 
 class _Residual:
     """The static flexibility of the modes left out, between the wheels."""
 
     def __init__(
-        self, rows: ContactRows, n_wheels: int, modes: Modes, flexibility: StaticFlexibility
+        self, standing: StandingWheels, modes: Modes, flexibility: StaticFlexibility
     ) -> None:
-        dofs = rows.used_dofs()
-        self._block = residual_block(flexibility, modes, dofs)
-        at = np.minimum(np.searchsorted(dofs, rows.dofs), len(dofs) - 1)
-        shape = (-1, n_wheels, rows.dofs.shape[1])
-        self._at, self._value = at.reshape(shape), rows.value.reshape(shape)
-        self._load_share = rows.load_share.reshape(-1, n_wheels)
+        self._standing, self._used = standing, standing.used_dofs()
+        self._block = residual_block(flexibility, modes, self._used)
 
     def with_more(self, flexible: Float[Array, "dofs modes"]) -> _Residual:
         """Return the residual with further modes left out, given as shapes over frequencies."""
@@ -159,12 +166,15 @@ class _Residual:
         return more
 
     def sinking(self, start: int, stop: int) -> Array:
-        at, value = self._at[start:stop], self._value[start:stop]
-        n_steps, n, width = at.shape
+        rows, _ = self._standing.window(start, stop)
+        n_steps, n, width = stop - start, self._standing.n_contacts, rows.dofs.shape[1]
+        at, value = (
+            part.reshape(n_steps, n, width) for part in (rows.among(self._used), rows.value)
+        )
         starts = np.arange(0, at.size + 1, width)
         shape = (n_steps * n, len(self._block))
         pressing = sparse.csr_array((value.ravel(), at.ravel(), starts), shape=shape)
         deflected = (pressing @ self._block).reshape(n_steps, n, -1)  # by each wheel, everywhere
         under = np.take_along_axis(deflected, at.reshape(n_steps, 1, -1), axis=2)
         out = np.einsum("sia,sjia->sij", value, under.reshape(n_steps, n, n, width))
-        return out * self._load_share[start:stop, None, :]
+        return out * rows.load_share.reshape(n_steps, 1, n)

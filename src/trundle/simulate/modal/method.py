@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from trundle._checks import positive, set_frozen
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import TOP, Damping, ModalRecursion, Modes
 from trundle.errors import FitnessWarning, InputError
-from trundle.route import ContactRows
 from trundle.signals import TOP_FREQUENCY
 from trundle.simulate.ground import ModalReach
 from trundle.simulate.modal.floor import ModalFloor
@@ -22,6 +21,7 @@ from trundle.simulate.modal.ground import ModalGround, RigidForExactSteps
 from trundle.simulate.modal.point_motion import point_filters
 from trundle.simulate.modal.residual import StaticFlexibility, point_residual, unit_loads
 from trundle.simulate.step_limits import step_problem
+from trundle.simulate.wheels.standing import StandingWheels
 from trundle.structure import Structure
 from trundle.vehicle import Vehicle
 
@@ -205,23 +205,17 @@ class FloorInModes:
         return int(must[-1]) + 1 if len(must) else 0
 
     def under(
-        self,
-        rows: ContactRows,
-        speed: Float[Array, "steps contacts"],
-        reader: SparseMatrix,
-        *,
-        coupled: bool,
+        self, standing: StandingWheels, reader: SparseMatrix, *, coupled: bool
     ) -> ModalGround:
         """Lie under wheels."""
-        residual, dofs = None, rows.used_dofs()
+        residual, dofs = None, standing.used_dofs()
         if self.residual:
             residual = point_residual(self.flexibility, self.modes, reader, dofs)
         followers = followers_of(self.modes, self.propagator, self.n_stepped, reader, dofs)
         floor = ModalFloor(
             self.modes.first(self.n_stepped),
             self.propagator.part(slice(self.n_stepped)),
-            rows,
-            speed,
+            standing,
             reader,
             flexibility=self.flexibility if coupled and self.residual else None,
             single=self.integration.single,

@@ -15,15 +15,15 @@ from functools import partial
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy import linalg
+from scipy import linalg, sparse
 
 from trundle._threads import n_threads
 from trundle._typing import Array
 from trundle.dynamics import REACH, differentiator, image_filters, restoring_filter
-from trundle.route import ContactRows
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.followers import Followers
 from trundle.simulate.wheels.driven import Driven
+from trundle.simulate.wheels.standing import StandingWheels
 
 __all__ = ["PointFilters", "complete", "point_filters"]
 
@@ -37,8 +37,8 @@ class PointFilters:
 
     Attributes
     ----------
-    rows : ContactRows
-        Of the contacts at every step.
+    standing : StandingWheels
+        The contacts at every step.
     dofs : ndarray of int, shape (n_dofs,)
         Dofs of the route, rising.
     taps : ndarray of float, shape (3, 2 REACH + 1, n_points, n_dofs)
@@ -46,7 +46,7 @@ class PointFilters:
         the points, by how many steps they come later, from -REACH on [m/N], [m/s/N], [m/s2/N].
     """
 
-    rows: ContactRows
+    standing: StandingWheels
     dofs: Int[Array, " dofs"]
     taps: Float[Array, "3 taps points dofs"]
 
@@ -77,7 +77,7 @@ def point_filters(
             taps[order] += rate * residual
     if followers is not None:
         taps += followers.taps()
-    return PointFilters(rows=floor.rows, dofs=floor.rows.used_dofs(), taps=taps)
+    return PointFilters(standing=floor.standing, dofs=floor.standing.used_dofs(), taps=taps)
 
 
 def complete(record: Driven, filters: PointFilters) -> Driven:
@@ -146,18 +146,18 @@ class _Influence:
     """Gives what forces around a block add to the points in it."""
 
     def __init__(self, filters: PointFilters, n_steps: int) -> None:
-        rows = filters.rows
-        weights = rows.matrix(rows.load_share[:, None] * rows.value)
-        self._weights = weights.tocsc()[:, filters.dofs].tocsr()
-        self._n_steps, self._n = n_steps, weights.shape[0] // n_steps
+        self._standing, self._dofs = filters.standing, filters.dofs
+        self._n_steps, self._n = n_steps, filters.standing.n_contacts
         self._shape = filters.taps.shape[:3]
         self._taps = -filters.taps.reshape(-1, len(filters.dofs)).T  # forces press downwards
 
     def of(self, steps: slice) -> Float[Array, "outputs forces"]:
         """Return (steps, 3, points) flat by (window, contacts) flat."""
         around, n = _around(steps, self._n_steps), self._n
-        contacts = (around[:, None] * n + np.arange(n)).ravel()
-        by_tap = (self._weights[contacts] @ self._taps).reshape(len(around), n, *self._shape)
+        first, last = int(around[0]), int(around[-1])
+        contacts = ((around - first)[:, None] * n + np.arange(n)).ravel()
+        weights = self._weights(first, last + 1)[contacts]
+        by_tap = (weights @ self._taps).reshape(len(around), n, *self._shape)
         n_steps, (_, n_taps, n_points) = steps.stop - steps.start, self._shape
         out = np.zeros((n_steps, 3, n_points, len(around), n))
         at = np.arange(n_steps)
@@ -165,3 +165,13 @@ class _Influence:
             late = by_tap[at + tap, :, :, tap]  # (steps, contacts, 3, points)
             out[at, :, :, at + tap] = late.transpose(0, 2, 3, 1)
         return out.reshape(n_steps * 3 * n_points, -1)
+
+    def _weights(self, start: int, stop: int) -> sparse.csr_array:
+        """Return what contacts at some steps press on the route's dofs."""
+        rows, _ = self._standing.window(start, stop)
+        weights, at = rows.load_share[:, None] * rows.value, rows.among(self._dofs)
+        starts = np.arange(0, at.size + 1, at.shape[1])
+        shape = (len(at), len(self._dofs))
+        matrix = sparse.csr_array((weights.ravel(), at.ravel(), starts), shape=shape)
+        matrix.sort_indices()
+        return matrix

@@ -23,8 +23,6 @@ from jaxtyping import Float, Int
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes
 from trundle.errors import InputError
-from trundle.simulate.crossing import Crossing
-from trundle.simulate.wheels.timeline import route_dofs
 from trundle.structure import Structure
 
 __all__ = [
@@ -63,9 +61,9 @@ class StaticFlexibility:
         self._dofs = np.zeros(0, dtype=np.intp)
         self._block = np.zeros((0, 0))
 
-    def cover(self, crossings: tuple[Crossing, ...]) -> None:
-        """Solve for all dofs of some routes, that several layouts will ask about."""
-        self._dofs = route_dofs(self._floor, crossings)
+    def cover(self, dofs: Int[Array, " dofs"]) -> None:
+        """Solve for all dofs of some routes, rising, that several layouts will ask about."""
+        self._dofs = dofs
         self._block = self._between(self._dofs, self._dofs)
 
     def block(self, dofs: Int[Array, " dofs"]) -> Float[Array, "dofs dofs"]:

@@ -9,6 +9,7 @@ is lost against stepping, and nothing is stored for a place but what is made of 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,7 @@ from trundle.route import ContactRows
 from trundle.simulate.ground import ModalReach, PreparedFloor
 from trundle.simulate.laying_out import spot_rows
 from trundle.simulate.layout import Layout
+from trundle.simulate.wheels.standing import StandingWheels
 from trundle.structure import Spots
 
 __all__ = ["PlaceResponses", "lay_out_places"]
@@ -103,13 +105,12 @@ def lay_out_places(
     InputError
         A floor that is not stepped in its modes, or a crossing that starts on it.
     """
-    rows = layout.rows
-    if rows is None:
+    standing = layout.rows
+    if standing is None:
         raise InputError("a map needs a floor: rigid ground does not vibrate")
     if layout.wheels.static:
         raise InputError("a map needs a floor at rest at time 0: let the vehicle drive in or ramp")
-    kept = np.abs(rows.value) > _NOUGHT * np.abs(rows.value).max(initial=0.0)
-    used = np.unique(rows.dofs[kept])
+    used = np.unique(np.concatenate([rows.dofs[kept] for rows, kept, _ in _pressing(standing)]))
     reach = prepared.reach(used, spot_rows(prepared.floor, places))
     n_steps, dt = len(layout.time), layout.integration.dt
     return PlaceResponses(
@@ -117,7 +118,7 @@ def lay_out_places(
         n_steps=n_steps,
         n_padded=_padded(n_steps, dt, _ringing(reach)),
         places=places.xy,
-        loads=_loads(rows, kept, used, n_steps),
+        loads=_loads(standing, used),
         route_shapes=reach.dof_shapes,
         place_shapes=reach.read_shapes,
         residual=reach.residual,
@@ -142,12 +143,22 @@ def _padded(n_steps: int, dt: float, ringing: float) -> int:
     return 2 * fft.next_fast_len(int(np.ceil((n_steps + ringing * fs) / 2)), real=True)
 
 
-def _loads(rows: ContactRows, kept: Array, used: Array, n_steps: int) -> sparse.csr_array:
+def _pressing(standing: StandingWheels) -> Iterator[tuple[ContactRows, Array, int]]:
+    """Give rows window by window, which of their weights count, and their first row among all."""
+    for start, stop in standing.windows():
+        rows, _ = standing.window(start, stop)
+        yield rows, np.abs(rows.value) > _NOUGHT * standing.largest, start * standing.n_contacts
+
+
+def _loads(standing: StandingWheels, used: Array) -> sparse.csr_array:
     """Return loads on used dofs at every step by the contact forces at every step."""
-    n_rows, width = rows.dofs.shape
-    weights = -rows.load_share[:, None] * rows.value
-    step = np.arange(n_rows) // (n_rows // n_steps)
-    at = step[:, None] * len(used) + np.searchsorted(used, rows.dofs)
-    column = np.broadcast_to(np.arange(n_rows)[:, None], (n_rows, width))
-    shape = (n_steps * len(used), n_rows)
-    return sparse.csr_array((weights[kept], (at[kept], column[kept])), shape=shape)
+    weights, at, columns = [], [], []
+    for rows, kept, first in _pressing(standing):
+        row = first + np.arange(len(rows.dofs))[:, None]
+        step = row // standing.n_contacts
+        weights.append((-rows.load_share[:, None] * rows.value)[kept])
+        at.append((step * len(used) + np.searchsorted(used, rows.dofs))[kept])
+        columns.append(np.broadcast_to(row, rows.dofs.shape)[kept])
+    entries = (np.concatenate(weights), (np.concatenate(at), np.concatenate(columns)))
+    shape = (standing.n_steps * len(used), standing.n_steps * standing.n_contacts)
+    return sparse.csr_array(entries, shape=shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +12,7 @@ from scipy import sparse
 
 from trundle._typing import Array
 from trundle.dynamics import LinearSystem, block_diagonal
+from trundle.simulate.sources.source import Source
 from trundle.simulate.wheels.timeline import Timeline
 from trundle.vehicle import Vehicle
 
@@ -50,6 +52,12 @@ class Contacts:
 
     vehicles: tuple[Vehicle, ...]
 
+    @classmethod
+    def of(cls, sources: Sequence[Source]) -> Contacts:
+        """Return what hangs on the contacts of some sources."""
+        moving = (source.oscillator or _nothing(source.contact_names) for source in sources)
+        return cls(vehicles=tuple(moving))
+
     @cached_property
     def each(self) -> tuple[Contacts, ...]:
         """Every vehicle by itself."""
@@ -76,6 +84,26 @@ class Contacts:
             static=np.concatenate([v.static_forces for v in many])[:, None],
             standing_stiffness=np.asarray(self.standing.stiffness),
         )
+
+
+def _nothing(contact_names: tuple[str, ...]) -> Vehicle:
+    """Return what stands for no vehicle: a mass on a spring that touches none of the contacts.
+
+    Contact springs are 0, so that what is put in at a contact is its force, moving floor or not.
+    """
+    none = np.zeros(len(contact_names))
+    one = np.ones((1, 1))
+    return Vehicle(
+        name="known forces",
+        system=LinearSystem(mass=one, damping=0.0 * one, stiffness=one),
+        contact_map=np.zeros((len(contact_names), 1)),
+        contact_stiffness=none,
+        contact_damping=none,
+        static_forces=none,
+        setback=none,
+        lateral=none,
+        contact_names=contact_names,
+    )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

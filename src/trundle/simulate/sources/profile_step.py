@@ -10,7 +10,7 @@ from scipy import ndimage, signal
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.road import Profile
-from trundle.simulate.crossing import Crossing
+from trundle.simulate.sources.crossing import Crossing
 
 __all__ = ["Hidden", "check_profile_step", "hidden_by_step"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trundle.errors import FitnessWarning
-from trundle.simulate.crossing import Crossing
+from trundle.simulate.sources.crossing import Crossing
 from trundle.vehicle import Vehicle
 
 __all__ = ["axle_hop_warnings"]

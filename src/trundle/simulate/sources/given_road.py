@@ -10,9 +10,9 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 from trundle.road import Profile, profile_doubts
-from trundle.simulate.crossing import Crossing
-from trundle.simulate.wheels.profile_step import check_profile_step, hidden_by_step
-from trundle.simulate.wheels.timeline import Timeline, timeline_of
+from trundle.route import Along
+from trundle.simulate.sources.crossing import Crossing
+from trundle.simulate.sources.profile_step import check_profile_step, hidden_by_step
 from trundle.vehicle import Vehicle
 
 __all__ = ["GivenRoad", "given_road", "given_road_doubts"]
@@ -65,8 +65,7 @@ def given_road_doubts(
         length = crossing.exit_time if duration is None else duration
         if not isinstance(crossing.road, Profile) or not np.isfinite(length):
             continue
-        timeline = timeline_of((crossing,), dt, max(length, 2.0 * dt))
-        lying = _lay(crossing, timeline, slice(0, crossing.vehicle.n_contacts))
+        lying = _lay(crossing, crossing.along(*_alone(crossing, dt, max(length, 2.0 * dt))))
         hidden = hidden_by_step(crossing, lying.road, lying.needed, speed=lying.speed, dt=dt)
         if hidden.force > _HIDDEN:
             found.append(
@@ -79,7 +78,14 @@ def given_road_doubts(
     return tuple(found)
 
 
-def given_road(crossing: Crossing, timeline: Timeline, columns: slice) -> GivenRoad:
+def _alone(crossing: Crossing, dt: float, duration: float) -> tuple[Array, float]:
+    """Return the times of a record that only this crossing is in, and when it begins [s]."""
+    begins = crossing.begins(dt)
+    before = max(0, int(np.ceil(-begins / dt - 1e-9)))
+    return dt * np.arange(-before, round(duration / dt) + 1), begins
+
+
+def given_road(crossing: Crossing, along: Along) -> GivenRoad:
     """Read the profile of a crossing, averaged over the tyre's contact patch.
 
     Raises
@@ -88,7 +94,7 @@ def given_road(crossing: Crossing, timeline: Timeline, columns: slice) -> GivenR
         A profile that does not cover the way that the wheels need, or that rises and falls
         within a step.
     """
-    lying = _lay(crossing, timeline, columns)
+    lying = _lay(crossing, along)
     station, road = lying.station, lying.road
     elevation, slope = road.at(station)
     slope = _over_kinks(road, station, slope)
@@ -109,11 +115,11 @@ class _Lying:
     speed: float  # the largest [m/s]
 
 
-def _lay(crossing: Crossing, timeline: Timeline, columns: slice) -> _Lying:
+def _lay(crossing: Crossing, along: Along) -> _Lying:
     """Lay the profile under the wheels, and refuse it where it cannot be right."""
     assert isinstance(crossing.road, Profile)  # the caller has looked
     profile = crossing.road.averaged(crossing.band.contact_patch)
-    station = timeline.station[:, columns] + crossing.chainage
+    station = along.station + crossing.chainage
     needed = _needed(crossing, station)
     _check_cover(crossing, profile, needed)
     known = profile.beyond != "unknown"
@@ -123,9 +129,9 @@ def _lay(crossing: Crossing, timeline: Timeline, columns: slice) -> _Lying:
         first=-np.inf if known else float(profile.station[0]),
         station=station,
         needed=needed,
-        speed=float(timeline.speed[:, columns].max()),
+        speed=float(along.speed.max()),
     )
-    dt = float(timeline.time[1] - timeline.time[0])
+    dt = float(along.time[1] - along.time[0])
     check_profile_step(crossing, lying.road, needed, speed=lying.speed, dt=dt)
     return lying
 

@@ -6,12 +6,14 @@ from dataclasses import KW_ONLY, dataclass, field
 from typing import Literal
 
 import numpy as np
+from jaxtyping import Float
 
 from trundle._checks import finite, non_negative, one_of, set_frozen
 from trundle._kinds import kinds_checked
+from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass, RoughnessBand
-from trundle.route import DriveIn, Entry, Route
+from trundle.route import Along, DriveIn, Entry, Route
 from trundle.vehicle import Vehicle
 
 __all__ = ["TAIL", "Crossing"]
@@ -19,6 +21,7 @@ __all__ = ["TAIL", "Crossing"]
 TAIL = 5.0
 """Free decay after the last wheel has left that a record holds, unless its length is given [s]."""
 
+_ROUNDING = 1e-9  # s
 _RUN_IN_LIMIT = 20.0  # s; a vehicle without damping would otherwise run in for ever
 
 
@@ -105,6 +108,25 @@ class Crossing:
         way = self.route.length - self.lead + self.vehicle.length
         return self.depart + self.route.law.time_to(way)
 
+    def begins(self, dt: float) -> float:
+        """Return when the vehicle begins to move, a whole number of steps [s]."""
+        if self.entry.standing:
+            return 0.0
+        return -float(np.ceil((self.run_in_time - self.depart) / dt - 1e-9)) * dt
+
+    def along(self, time: Float[Array, " times"], begins: float) -> Along:
+        """Return where its wheels are on their way at some times.
+
+        Before its own start a vehicle stands still, so that it drives the same way whether others
+        have a longer run-in or not.
+        """
+        law, clock = self.route.law, np.maximum(time - self.depart, begins - self.depart)
+        moving = time - begins > _ROUNDING
+        front = self.lead + law.distance(clock)
+        station = front[:, None] - self.vehicle.setback
+        speed = np.broadcast_to((law.speed(clock) * moving)[:, None], station.shape)
+        return Along(time=time, station=station, speed=speed)
+
     def wheels_on_floor(self, time: float) -> int:
         """Return how many of the wheels stand on the route at a time."""
         front = self.lead + float(self.route.law.distance(time - self.depart))
@@ -118,8 +140,3 @@ class Crossing:
             return None
         place, _ = self.route.locate(np.array([station]))
         return float(place[0, 0]), float(place[0, 1])
-
-
-def contact_count(crossings: tuple[Crossing, ...]) -> int:
-    """Return the number of contact points of all crossings together."""
-    return int(np.sum([crossing.vehicle.n_contacts for crossing in crossings]))

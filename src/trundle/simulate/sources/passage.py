@@ -1,0 +1,214 @@
+"""Make a crossing a source of vibration: a vehicle that a road pushes at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._typing import Array
+from trundle._words import in_kmh
+from trundle.dynamics import Modes
+from trundle.errors import FitnessWarning
+from trundle.road import FITTED_RANGE, Profile, RoadClass
+from trundle.route import Along, Track, follow
+from trundle.simulate.sources.axle_hop import axle_hop_warnings
+from trundle.simulate.sources.crossing import Crossing
+from trundle.simulate.sources.given_road import GivenRoad, given_road, given_road_doubts
+from trundle.simulate.sources.random_road import RandomRoad
+from trundle.simulate.sources.source import Source, WaveSet
+from trundle.simulate.sources.waves import waves_under
+from trundle.structure import ContactShape, Structure
+from trundle.vehicle import Vehicle
+
+__all__ = ["Passage", "as_sources"]
+
+_HARMONICS = 4  # multiples of V / h that the hat function excites noticeably
+_NEAR = 0.05  # relative distance within which such a frequency counts as on a mode
+_TOP_EDGE = 89.2  # Hz: where the 80 Hz band ends
+_PLACES_A_METRE = 50  # of a way, where the dofs under it are looked for
+
+
+def as_sources(given: Crossing | Source | Sequence[Crossing | Source]) -> tuple[Source, ...]:
+    """Return what makes a structure vibrate; crossings become passages."""
+    many = (given,) if isinstance(given, Crossing | Source) else tuple(given)
+    return tuple(Passage(crossing=one) if isinstance(one, Crossing) else one for one in many)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Passage:
+    """A vehicle that crosses a structure on a road.
+
+    Attributes
+    ----------
+    crossing : Crossing
+        Who drives where.
+    """
+
+    crossing: Crossing
+
+    @property
+    def name(self) -> str:
+        """Name of its route."""
+        return self.crossing.route.name
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Its wheels by name."""
+        return self.crossing.vehicle.contact_names
+
+    @property
+    def oscillator(self) -> Vehicle:
+        """The vehicle."""
+        return self.crossing.vehicle
+
+    @property
+    def standing(self) -> bool:
+        """Whether it starts on the structure, in equilibrium with it."""
+        return self.crossing.entry.standing
+
+    @property
+    def level(self) -> bool:
+        """Whether the vehicle starts level."""
+        return self.crossing.start == "level"
+
+    @property
+    def leaves(self) -> float:
+        """Time at which the last wheel leaves [s]."""
+        return self.crossing.exit_time
+
+    @property
+    def on(self) -> str | None:
+        """Name of the surface that it drives on."""
+        return self.crossing.route.on
+
+    def begins(self, dt: float) -> float:
+        """Return when it begins to move, a whole number of steps [s]."""
+        return self.crossing.begins(dt)
+
+    def track(self, time: Float[Array, " times"], begins: float) -> Track:
+        """Return where its wheels are."""
+        crossing = self.crossing
+        along = crossing.along(time, begins)
+        return follow(crossing.route, crossing.entry, crossing.vehicle.lateral, along)
+
+    def way(self) -> Iterator[tuple[Float[Array, "places 2"], Float[Array, "places 2"]]]:
+        """Give places all along each track of its wheels."""
+        route = self.crossing.route
+        station = np.linspace(0.0, route.length, _PLACES_A_METRE * int(route.length) + 2)
+        for lateral in np.unique(self.crossing.vehicle.lateral):
+            yield route.locate(station, lateral)
+
+    def inputs(self, time: Float[Array, " times"], begins: float, seed: int) -> RoadInputs:
+        """Return what its road pushes at the wheels."""
+        crossing = self.crossing
+        along = crossing.along(time, begins)
+        if isinstance(crossing.road, Profile):
+            return RoadInputs(crossing, along, _Same(given_road(crossing, along)))
+        return RoadInputs(crossing, along, RandomRoad(crossing, crossing.road, along, seed))
+
+    def waves(
+        self, time: Float[Array, " times"], begins: float, n_waves: int
+    ) -> tuple[WaveSet, ...]:
+        """Return the waves of a random road, each set from an independent source."""
+        crossing = self.crossing
+        if not isinstance(crossing.road, RoadClass):
+            return ()
+        return tuple(waves_under(crossing, crossing.road, crossing.along(time, begins), n_waves))
+
+    def excited_to(self, ends: float) -> float:
+        """Return where the waves of the road end under the vehicle [Hz]."""
+        crossing = self.crossing
+        clock = np.linspace(0.0, max(0.0, ends - crossing.depart), 201)
+        speed = float(np.max(crossing.route.law.speed(clock)))
+        if not isinstance(crossing.road, Profile):
+            return speed * crossing.band.n_max
+        apart = np.diff(crossing.road.station)
+        # samples hold no wave shorter than two; of a few points nobody knows what they hold
+        return speed * 0.5 / float(apart[apart > 0.0].min())
+
+    def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
+        """Refuse a given profile that the step cannot show; return doubts about one."""
+        return given_road_doubts((self.crossing,), dt, duration)
+
+    def doubts(
+        self, structure: Structure, modes: Modes | None, contact: ContactShape
+    ) -> tuple[FitnessWarning, ...]:
+        """Return what a result must say of vehicle, road, and mesh under the wheels."""
+        found = [*axle_hop_warnings((self.crossing,)), *_extrapolation(self.crossing)]
+        if contact.kinks:
+            found.append(_mesh_passing(self.crossing, structure, modes))
+        return tuple(found)
+
+
+class _Same:
+    """A given road: the same in every run."""
+
+    def __init__(self, road: GivenRoad) -> None:
+        self._road = np.array([road.elevation, road.slope])
+
+    def draw(self, run: int) -> Float[Array, "2 times contacts"]:
+        """Return elevation [m] and slope under the wheels."""
+        del run
+        return self._road
+
+    def still(self) -> Float[Array, "2 times contacts"]:
+        """Return the same."""
+        return self._road
+
+
+class RoadInputs:
+    """What a road pushes at the wheels of a vehicle."""
+
+    def __init__(self, crossing: Crossing, along: Along, road: RandomRoad | _Same) -> None:
+        self._road, self._level = road, crossing.start == "level"
+        self._stiffness = crossing.vehicle.contact_stiffness
+        self._rolling = crossing.vehicle.contact_damping * along.speed
+
+    def draw(self, run: int) -> tuple[Float[Array, "times contacts"], Float[Array, " contacts"]]:
+        """Return the pushes of a run [N], and the height under each wheel at first [m]."""
+        return self._pushed(lambda: self._road.draw(run))
+
+    def still(self) -> tuple[Float[Array, "times contacts"], Float[Array, " contacts"]]:
+        """Return the same without a random road."""
+        return self._pushed(self._road.still)
+
+    def _pushed(self, read: Callable[[], Array]) -> tuple[Array, Array]:
+        elevation, slope = read()
+        push = self._stiffness * elevation + self._rolling * slope
+        return push, np.zeros_like(elevation[0]) if self._level else elevation[0]
+
+
+def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
+    if not isinstance(crossing.road, RoadClass):
+        return []
+    speed = float(crossing.route.law.speed(0.0))
+    n_max = crossing.band.n_max
+    if n_max > FITTED_RANGE[1] * (1 + 1e-9):
+        message = (
+            f"waves to {n_max:.3g} cycle/m are beyond ISO 8608's fitted range "
+            f"({FITTED_RANGE[1]:g}); the road above {speed * FITTED_RANGE[1]:.3g} Hz at "
+            f"{in_kmh(speed)} is extrapolated"
+        )
+    else:
+        message = (
+            f"waves end at {n_max:.3g} cycle/m, which is {speed * n_max:.3g} Hz at "
+            f"{in_kmh(speed)}; the road excites nothing above it, and bands there are not "
+            f"assessed: n_max = {_TOP_EDGE / speed:.3g} 1/m with a contact patch reaches 80 Hz"
+        )
+    return [FitnessWarning(subject=f"roughness band, {crossing.route.name}", message=message)]
+
+
+def _mesh_passing(crossing: Crossing, structure: Structure, modes: Modes | None) -> FitnessWarning:
+    size = structure.surface(crossing.route.on).element_size
+    speed = float(crossing.route.law.speed(0.0))
+    passing = speed / size * np.arange(1, _HARMONICS + 1)
+    note = f"hat functions of {size:.3g} m are passed at {speed / size:.3g} Hz and its multiples"
+    if modes is not None:
+        f = modes.frequencies[:, None]
+        hits = np.unique(np.round(passing[(np.abs(f - passing) < _NEAR * f).any(axis=0)], 2))
+        if hits.size:
+            note += "; " + ", ".join(f"{hit:g} Hz" for hit in hits) + " lies on a mode"
+    return FitnessWarning(subject=f"mesh passing, {crossing.route.name}", message=note)

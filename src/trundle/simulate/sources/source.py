@@ -1,0 +1,173 @@
+"""Say what is asked of a source of vibration.
+
+A source says where its contacts are (`Track`), what hangs on them (a vehicle, or nothing: then its
+forces are known), and what is put in at every run (`Inputs`). Structures, integrations, statistics
+and maps know no more of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from trundle._typing import Array
+from trundle.dynamics import Modes
+from trundle.errors import FitnessWarning
+from trundle.route import Along, Track
+from trundle.structure import ContactShape, Structure
+from trundle.vehicle import Vehicle
+
+__all__ = ["Inputs", "Source", "WaveSet"]
+
+
+@runtime_checkable
+class Inputs(Protocol):
+    """What one source puts in, run by run: pushes at its contacts.
+
+    A push is what would be added to a contact's force if source and structure stood still [N]; of a
+    source without a vehicle it is its force, downwards.
+    """
+
+    def draw(self, run: int) -> tuple[Float[Array, "times contacts"], Float[Array, " contacts"]]:
+        """Return the pushes of a run [N], and the height under each contact at first [m]."""
+        ...
+
+    def still(self) -> tuple[Float[Array, "times contacts"], Float[Array, " contacts"]]:
+        """Return the same without anything random."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WaveSet:
+    """Hold waves of one random road, as one independent source sends them to a vehicle's wheels.
+
+    Attributes
+    ----------
+    along : Along
+        Where the wheels are, at all times.
+    n : ndarray of float, shape (n_waves,)
+        Spatial frequencies [cycle/m].
+    power, coarse_power : ndarray of float, shape (n_waves,)
+        Variance that each stands for, and what every other one would stand for [m2].
+    share : ndarray of float, shape (n_waves, n_contacts)
+        Part of the unit amplitude at each wheel's track.
+    stiffness, damping : ndarray of float, shape (n_contacts,)
+        Contact springs [N/m] and dampers [N s/m].
+    level : bool
+        Whether the vehicle starts level, as over a road of no height.
+    """
+
+    along: Along
+    n: Float[Array, " waves"]
+    power: Float[Array, " waves"]
+    coarse_power: Float[Array, " waves"]
+    share: Float[Array, "waves contacts"]
+    stiffness: Float[Array, " contacts"]
+    damping: Float[Array, " contacts"]
+    level: bool
+
+    def part(self, which: slice) -> WaveSet:
+        """Return some of the waves."""
+        return replace(
+            self,
+            n=self.n[which],
+            power=self.power[which],
+            coarse_power=self.coarse_power[which],
+            share=self.share[which],
+        )
+
+    def phase(self) -> Float[Array, "waves times"]:
+        """Return the phase of every wave under the front wheel [rad]."""
+        return 2.0 * np.pi * self.n[:, None] * self.along.station[:, 0]
+
+    def pushes(self) -> Iterator[tuple[Complex[Array, "times waves"], Complex[Array, " waves"]]]:
+        """Give what waves of unit amplitude push at each contact [N/m], and their first height."""
+        along, wavenumber = self.along, 2.0 * np.pi * self.n
+        front = along.station[:, 0]
+        rolling = np.exp(1j * front[:, None] * wavenumber)
+        for i, (k, c) in enumerate(zip(self.stiffness, self.damping, strict=True)):
+            # every wheel of a vehicle follows its first at a fixed distance
+            behind = np.exp(1j * (along.station[0, i] - front[0]) * wavenumber)
+            unit = rolling * (self.share[:, i] * behind)
+            turning = along.speed[:, i, None] * wavenumber
+            yield (k + 1j * c * turning) * unit, np.zeros_like(unit[0]) if self.level else unit[0]
+
+
+@runtime_checkable
+class Source(Protocol):
+    """Something that makes a structure vibrate."""
+
+    @property
+    def name(self) -> str:
+        """Its name; what is random of it depends on the seed, this name and the run alone."""
+        ...
+
+    @property
+    def contact_names(self) -> tuple[str, ...]:
+        """Its contacts by name."""
+        ...
+
+    @property
+    def oscillator(self) -> Vehicle | None:
+        """What moves over the contacts; None where the forces are known."""
+        ...
+
+    @property
+    def standing(self) -> bool:
+        """Whether it stands on the structure at time 0, in equilibrium with it."""
+        ...
+
+    @property
+    def level(self) -> bool:
+        """Whether its vehicle starts level, and not in equilibrium on the road."""
+        ...
+
+    @property
+    def leaves(self) -> float:
+        """Time at which its last contact leaves [s]; infinity if none ever does."""
+        ...
+
+    def begins(self, dt: float) -> float:
+        """Return when it begins to move [s], whole steps before or after time 0."""
+        ...
+
+    def track(self, time: Float[Array, " times"], begins: float) -> Track:
+        """Return where its contacts are at some times [s]; before it begins it stands still."""
+        ...
+
+    def way(self) -> Iterator[tuple[Float[Array, "places 2"], Float[Array, "places 2"]]]:
+        """Give places all along its way, with directions, closer than elements are long."""
+        ...
+
+    @property
+    def on(self) -> str | None:
+        """Name of the surface that it acts on; None for the only one."""
+        ...
+
+    def inputs(self, time: Float[Array, " times"], begins: float, seed: int) -> Inputs:
+        """Return what it puts in from its first time to the record's end."""
+        ...
+
+    def waves(
+        self, time: Float[Array, " times"], begins: float, n_waves: int
+    ) -> tuple[WaveSet, ...]:
+        """Return the waves of what is random of it; none where nothing is."""
+        ...
+
+    def excited_to(self, ends: float) -> float:
+        """Return to which frequency it excites a structure in a record of a length [s]."""
+        ...
+
+    def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
+        """Refuse what a step [s] cannot show, before work starts; return doubts about it."""
+        ...
+
+    def doubts(
+        self, structure: Structure, modes: Modes | None, contact: ContactShape
+    ) -> tuple[FitnessWarning, ...]:
+        """Return what a result must say of it on a structure."""
+        ...

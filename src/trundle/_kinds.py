@@ -22,6 +22,7 @@ __all__ = ["kinds_checked"]
 
 T = TypeVar("T", bound=Callable[..., Any])
 
+_MISSING = object()
 _EXAMPLES = {
     "RoadClass": 'RoadClass("B")',
     "Criterion": 'find_criterion("VC-A"), or VC for the generic curves',
@@ -128,7 +129,7 @@ def _fits(value: object, wanted: Any) -> bool | None:
     if getattr(origin, "_is_protocol", False):
         members = [name for name in dir(origin) if not name.startswith("_")]
         # what is there is looked at, not called: a property may be long to compute
-        return all(inspect.getattr_static(value, name, None) is not None for name in members)
+        return all(inspect.getattr_static(value, name, _MISSING) is not _MISSING for name in members)
     if origin is tuple:
         return isinstance(value, list | tuple | np.ndarray) and _as_long(value, wanted)
     if origin in {Mapping, Sequence} and isinstance(value, str):

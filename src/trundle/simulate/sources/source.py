@@ -99,7 +99,11 @@ class WaveSet:
 
 @runtime_checkable
 class Source(Protocol):
-    """Something that makes a structure vibrate."""
+    """Something that makes a structure vibrate.
+
+    Whoever inherits from it need not say what does not hold for it: a vehicle, a start in
+    equilibrium, a run-in, anything random, a doubt.
+    """
 
     @property
     def name(self) -> str:
@@ -114,17 +118,17 @@ class Source(Protocol):
     @property
     def oscillator(self) -> Vehicle | None:
         """What moves over the contacts; None where the forces are known."""
-        ...
+        return None
 
     @property
     def standing(self) -> bool:
         """Whether it stands on the structure at time 0, in equilibrium with it."""
-        ...
+        return False
 
     @property
     def level(self) -> bool:
         """Whether its vehicle starts level, and not in equilibrium on the road."""
-        ...
+        return False
 
     @property
     def leaves(self) -> float:
@@ -133,7 +137,8 @@ class Source(Protocol):
 
     def begins(self, dt: float) -> float:
         """Return when it begins to move [s], whole steps before or after time 0."""
-        ...
+        del dt
+        return 0.0
 
     def track(self, time: Float[Array, " times"], begins: float) -> Track:
         """Return where its contacts are at some times [s]; before it begins it stands still."""
@@ -156,7 +161,8 @@ class Source(Protocol):
         self, time: Float[Array, " times"], begins: float, n_waves: int
     ) -> tuple[WaveSet, ...]:
         """Return the waves of what is random of it; none where nothing is."""
-        ...
+        del time, begins, n_waves
+        return ()
 
     def excited_to(self, ends: float) -> float:
         """Return to which frequency it excites a structure in a record of a length [s]."""
@@ -164,10 +170,12 @@ class Source(Protocol):
 
     def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
         """Refuse what a step [s] cannot show, before work starts; return doubts about it."""
-        ...
+        del dt, duration
+        return ()
 
     def doubts(
         self, structure: Structure, modes: Modes | None, contact: ContactShape
     ) -> tuple[FitnessWarning, ...]:
         """Return what a result must say of it on a structure."""
-        ...
+        del structure, modes, contact
+        return ()

@@ -36,8 +36,6 @@ class StandingWheels:
         sources: tuple[Source, ...],
         timeline: Timeline,
         shape: ContactShape,
-        *,
-        held: float = _HELD,
     ) -> None:
         self._structure, self._shape, self._timeline = structure, shape, timeline
         self._parts = tuple(columns_of(sources, timeline))
@@ -45,7 +43,7 @@ class StandingWheels:
         self.n_contacts = sum(len(source.contact_names) for source in sources)
         self._rows: ContactRows | None = None
         self._speed: Float[Array, "steps contacts"] | None = None
-        if _A_ROW * self.n_steps * self.n_contacts <= held:
+        if _A_ROW * self.n_steps * self.n_contacts <= _HELD:
             self._rows, self._speed = self._form(0, self.n_steps)
 
     def window(self, start: int, stop: int) -> tuple[ContactRows, Float[Array, "steps contacts"]]:
@@ -55,9 +53,9 @@ class StandingWheels:
         part = slice(start * self.n_contacts, stop * self.n_contacts)
         return self._rows.part(part), self._speed[start:stop]
 
-    def windows(self, length: int = _WINDOW) -> list[tuple[int, int]]:
-        """Return the record's steps in windows of a length, the first and behind the last step."""
-        return list(pairwise([*range(0, self.n_steps, length), self.n_steps]))
+    def windows(self) -> list[tuple[int, int]]:
+        """Return the record's steps in windows, the first of each and that behind its last."""
+        return list(pairwise([*range(0, self.n_steps, _WINDOW), self.n_steps]))
 
     @property
     def whole(self) -> ContactRows:

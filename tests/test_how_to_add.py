@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import trundle
@@ -100,6 +101,77 @@ stiffness = 1e5
 damping = 500.0
 source = "made up"
 """,
+    "simulate/sources/shaker.py": '''
+"""A force that shakes a floor at one place."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trundle.route import Track
+from trundle.simulate.sources.source import KnownForces
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaker(KnownForces):
+    name: str
+    at: tuple
+    amplitude: float
+    frequency: float
+    contact_names = ("foot",)
+    leaves = 0.0
+    on = None
+
+    def track(self, time, begins):
+        one = np.ones((len(time), 1))
+        place = np.broadcast_to(self.at, (len(time), 1, 2))
+        way = np.broadcast_to([1.0, 0.0], place.shape)
+        return Track(on=None, place=place, direction=way, speed=0 * one, share=one, share_slope=0 * one)
+
+    def way(self):
+        yield np.array([self.at]), np.array([[1.0, 0.0]])
+
+    def inputs(self, time, begins, seed):
+        force = self.amplitude * np.sin(2 * np.pi * self.frequency * np.maximum(time, 0.0))
+        return Known(force[:, None])
+
+    def excited_to(self, ends):
+        return self.frequency
+
+
+@dataclass(frozen=True)
+class Known:
+    forces: np.ndarray
+
+    def draw(self, run):
+        return self.forces, np.zeros(1)
+
+    def still(self):
+        return self.draw(0)
+''',
+    "study_file/sections/shaker.py": '''
+"""Shakers."""
+
+from dataclasses import replace
+
+from trundle.simulate.sources.shaker import Shaker
+from trundle.study_file.fields import Frequency, GroupName, Place, Section
+from trundle.study_file.kinds import SectionKind
+
+
+class ShakerSection(Section):
+    name: GroupName
+    at: Place
+    frequency: Frequency
+
+
+SHAKER = SectionKind(name="shaker", schema=ShakerSection, form="list")
+
+
+def build(draft):
+    shakers = {s.name: Shaker(name=s.name, at=s.at, amplitude=500.0, frequency=s.frequency) for s in draft.file.items("shaker")}
+    return replace(draft, sources={**draft.sources, **shakers}), []
+''',
     "records/formats/toy.py": '''
 """A format of two numbers a line behind the word TOY."""
 
@@ -192,6 +264,53 @@ print(json.dumps([list(tr.list_vehicles()), vehicle.natural_frequencies().tolist
     assert any(
         f == pytest.approx((2e5 / 300.0) ** 0.5 / 6.283185307, rel=1e-3) for f in frequencies
     )
+
+
+SHAKEN = """
+[[shaker]]
+name = "pump"
+at = ["4 m", "2 m"]
+frequency = "7 Hz"
+
+[[traffic]]
+name = "both"
+routes = ["main", "pump"]
+"""
+
+
+@pytest.mark.slow
+def test_a_source_is_one_file_and_one_of_a_study(house, tmp_path):
+    """Alone and beside the truck, to report and arrays; decoupled they add up at every point."""
+    text = GOOD.replace('interaction = "coupled"', 'interaction = "decoupled"')
+    (tmp_path / "study.toml").write_text(text + SHAKEN)
+    (tmp_path / "bad.toml").write_text(text + SHAKEN.replace('"7 Hz"', '"7 m"'))
+    script = """
+import json, sys
+from pathlib import Path
+import trundle as tr
+out = Path(sys.argv[2])
+study = tr.load_study(sys.argv[1])
+tr.run_study(study, out)
+tree = tr.read_results(out).to_xarray()
+found = {}
+for case in ("main", "pump", "both"):
+    histories = next(g for g in tree.groups if g.startswith("/histories/"))
+    found[case] = tree[histories]["acceleration"].sel(case=case).values.ravel().tolist()
+try:
+    tr.load_study(sys.argv[3])
+except tr.errors.StudyError as error:
+    told = str(error)
+print(json.dumps([found, told, [case.name for case in study.cases]]))
+"""
+    found, told, cases = said(
+        house, script, tmp_path / "study.toml", tmp_path / "out", tmp_path / "bad.toml"
+    )
+    assert cases == ["main", "pump", "both"]
+    assert "shaker[1].frequency" in told
+    main, pump, both = (np.array(found[case]) for case in cases)
+    assert np.abs(pump).max() > 0.0
+    np.testing.assert_allclose(both, main + pump, atol=1e-9 * np.abs(both).max())
+    assert (tmp_path / "out" / "report.html").stat().st_size > 1e5
 
 
 def test_a_criterion_is_one_entry(house):

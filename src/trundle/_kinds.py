@@ -129,7 +129,9 @@ def _fits(value: object, wanted: Any) -> bool | None:
     if getattr(origin, "_is_protocol", False):
         members = [name for name in dir(origin) if not name.startswith("_")]
         # what is there is looked at, not called: a property may be long to compute
-        return all(inspect.getattr_static(value, name, _MISSING) is not _MISSING for name in members)
+        return all(
+            inspect.getattr_static(value, name, _MISSING) is not _MISSING for name in members
+        )
     if origin is tuple:
         return isinstance(value, list | tuple | np.ndarray) and _as_long(value, wanted)
     if origin in {Mapping, Sequence} and isinstance(value, str):

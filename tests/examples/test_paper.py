@@ -80,7 +80,7 @@ def test_the_reading_gives_decoupled_far_above_coupled_on_three_roads():
     def medians(name, plan):
         runs = ensemble(
             floor,
-            study.crossings(cases[name], "A", plan),
+            study.acting(cases[name], "A", plan),
             method=plan.interaction,
             points=study.points,
             n_runs=40,

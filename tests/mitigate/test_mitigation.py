@@ -141,8 +141,8 @@ def test_a_criterion_is_not_met_for_want_of_excitation(tmp_path):
     study = study_of(tmp_path)
     sweep = try_changes(study, changes=[Change()], speeds=(15 * KMH,), roads=("A",), runs=2)
     (one,) = sweep.outcomes
-    (crossing,) = study.crossings(study.cases[0], "B", study.methods[0])
-    assert one.excited_to == pytest.approx(15 * KMH * crossing.band.n_max)
+    (passage,) = study.acting(study.cases[0], "B", study.methods[0])
+    assert one.excited_to == pytest.approx(15 * KMH * passage.crossing.band.n_max)
     assert all(v.status != "pass" for v in one.verdicts)
     assert all(min(v.unexcited) == 12.5 for v in one.verdicts if v.unexcited)
     assert any(v.unexcited for v in one.verdicts)

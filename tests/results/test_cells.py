@@ -21,7 +21,7 @@ def test_every_class_has_the_response_to_its_own_road(tmp_path):
     for road in study.roads:
         cell = result.cells[CellKey(case.name, road, method.name)]
         alone = ensemble(
-            study.floor, study.crossings(case, road, method), method=method.interaction,
+            study.floor, study.acting(case, road, method), method=method.interaction,
             points=study.points, n_runs=study.runs, seed=study.seed, duration=study.duration,
         )  # fmt: skip
         np.testing.assert_allclose(cell.peak_acceleration, alone.peak_acceleration(), rtol=1e-7)

@@ -44,7 +44,7 @@ def test_a_rougher_road_has_its_own_map(tmp_path):
     case, method = study.cases[0], study.methods[0]
     points = {f"p{i}": tuple(p) for i, p in enumerate(study.map.places.xy)}
     alone = ensemble(
-        study.floor, study.crossings(case, "C", method), method=method.interaction,
+        study.floor, study.acting(case, "C", method), method=method.interaction,
         points=points, n_runs=study.runs, seed=study.seed, duration=study.duration,
     )  # fmt: skip
     (mapped,) = (m for key, m in result.maps.items() if key.road == "C")

@@ -22,7 +22,7 @@ from trundle.simulate import (
     lay_out_places,
     prepare,
 )
-from trundle.simulate.sources.source import Source
+from trundle.simulate.sources.source import KnownForces
 from trundle.simulate.wheels import standing
 from trundle.structure import (
     CONCRETE,
@@ -40,7 +40,7 @@ POINTS = {"tool": (8.0, 4.0)}
 
 
 @dataclass(frozen=True)
-class Shaker(Source):
+class Shaker(KnownForces):
     """A force ``amplitude sin(2 pi f t)`` that presses at one place."""
 
     at: tuple[float, float]

@@ -200,7 +200,7 @@ def _resonances(
     for one in combinations:
         for change in one.changes:
             drives = changed_study(study, Change(vehicle=change.vehicle)).drives
-            vehicles = [drives[name].vehicle for name in one.case.routes] if modes else []
+            vehicles = [drives[n].vehicle for n in one.case.routes if n in drives] if modes else []
             f1 = float(modes.frequencies[0]) if modes else np.nan
             marked = {v for vehicle in vehicles for v in resonance_speeds(vehicle, f1, speeds)}
             found[change.label, one.case.name] = tuple(sorted(marked))

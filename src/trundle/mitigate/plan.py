@@ -90,8 +90,8 @@ def plan_changes(
         changed = replace(changed, methods=(assessed(changed)[1],))
         for (j, speed), (k, case) in itertools.product(enumerate(speeds), enumerate(study.cases)):
             there = replace(changed.at_speed(speed), cases=(case,))
-            crossings = there.crossings(case, roads[0], there.methods[0])
-            (job,) = plan_jobs(replace(there, duration=there.long_enough(crossings)))
+            acting = there.acting(case, roads[0], there.methods[0])
+            (job,) = plan_jobs(replace(there, duration=there.long_enough(acting)))
             job = replace(job, name=f"change{i}-speed{j}-case{k}", n_waves=0)
             found.append(Combination(changes=tuple(together), case=case, speed=speed, job=job))
     return tuple(found)

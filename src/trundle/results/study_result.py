@@ -15,7 +15,7 @@ from trundle.response import BandSpectra, few_runs_warnings, level_warnings, siz
 from trundle.results.cells import Cell, CellKey
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.modes import FirstModes
-from trundle.simulate import Crossing
+from trundle.simulate import Source
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
 from trundle.study.doubts import study_doubts
 from trundle.study.model import Study
@@ -141,18 +141,18 @@ def positions_at(result: StudyResult, key: CellKey, time: float) -> dict[str, li
     """
     if np.isnan(time):
         return {}
-    places = {c.route.name: c.front_axle(time) for c in _crossings(result, key)}
+    places = {source.name: source.stands_at(time)[0] for source in _acting(result, key)}
     return {name: None if place is None else list(place) for name, place in places.items()}
 
 
 def wheels_at(result: StudyResult, key: CellKey, time: float) -> dict[str, int]:
     """Return how many wheels of each vehicle stand on the floor at a time [s]."""
-    return {c.route.name: c.wheels_on_floor(time) for c in _crossings(result, key)}
+    return {source.name: source.stands_at(time)[1] for source in _acting(result, key)}
 
 
-def _crossings(result: StudyResult, key: CellKey) -> tuple[Crossing, ...]:
-    """Return what drives in a cell."""
+def _acting(result: StudyResult, key: CellKey) -> tuple[Source, ...]:
+    """Return what acts in a cell."""
     study = result.study
     case = next(case for case in study.cases if case.name == key.case)
     method = next(method for method in study.methods if method.name == key.method)
-    return study.crossings(case, key.road, method)
+    return study.acting(case, key.road, method)

@@ -38,7 +38,7 @@ class Size:
 def run_in_steps(job: Job) -> float:
     """Return how many steps the vehicles of a job take before they reach the floor."""
     dt = job.method.interaction.integration.dt
-    return max(0.0, *(c.run_in_time - c.depart for c in job.crossings)) / dt
+    return max(0.0, *(-source.begins(dt) for source in job.sources)) / dt
 
 
 def _steps(job: Job) -> float:
@@ -46,7 +46,7 @@ def _steps(job: Job) -> float:
 
 
 def _contacts(job: Job) -> int:
-    return sum(crossing.vehicle.n_contacts for crossing in job.crossings)
+    return sum(len(source.contact_names) for source in job.sources)
 
 
 def runs_seconds(job: Job, part: range, size: Size) -> float:
@@ -64,8 +64,8 @@ def exact_seconds(job: Job, size: Size) -> float:
     """Return about how long the exact statistics of a job take [s]."""
     dt, points = job.method.interaction.integration.dt, len(job.points)
     a_wave = 8.3e-10 * size.n_modes + 6e-8 * _contacts(job) + 2.2e-7 * points
-    at_once = max(1, runs_at_once(job.crossings, dt, job.duration, points) // 2)
-    waves = job.n_waves * len(job.crossings)
+    at_once = max(1, runs_at_once(job.sources, dt, job.duration, points) // 2)
+    waves = job.n_waves * sum(source.random for source in job.sources)
     passes = float(np.ceil(waves / at_once))
     return _steps(job) * (passes * _PASS + 2.0 * waves * a_wave)
 

@@ -157,7 +157,7 @@ def peak_memory(jobs: Sequence[Job], n_dofs: int, n_modes: float) -> float:
 def _memory_of(job: Job) -> float:
     dt = job.method.interaction.integration.dt
     before, record = run_in_steps(job), job.duration / dt
-    contacts = sum(crossing.vehicle.n_contacts for crossing in job.crossings)
+    contacts = sum(len(source.contact_names) for source in job.sources)
     points, roads = len(job.points), len(job.factors)
     columns = 1 + max((len(part) for part in job.parts), default=job.n_waves)
     a_run = 8.0 * ((before + record) * contacts + record * (3 * points + contacts))

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from trundle.dynamics import Modes
 from trundle.run.jobs import Job
 from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
-from trundle.simulate.sources.passage import as_sources
 from trundle.simulate.wheels.standing import route_dofs
 from trundle.structure import Floor
 from trundle.study.model import MethodPlan
@@ -23,16 +22,15 @@ class Floors:
         self._flexibility = StaticFlexibility(floor)
         # All routes, whatever is missing: a resumed run must solve for the same things together.
         coupled = [job for job in jobs if job.modal and job.method.interaction.moves]
-        self._routes = {crossing.route: crossing for job in coupled for crossing in job.crossings}
+        self._ways = {source.name: source for job in coupled for source in job.sources}
         self._held: tuple[MethodPlan, PreparedFloor] | None = None
 
     def of(self, job: Job) -> PreparedFloor:
         """Return the floor as a job's method needs it."""
         method, interaction = job.method, job.method.interaction
-        if self._routes:
-            sources = as_sources(list(self._routes.values()))
-            self._flexibility.cover(route_dofs(self._floor, sources))
-            self._routes = {}
+        if self._ways:
+            self._flexibility.cover(route_dofs(self._floor, tuple(self._ways.values())))
+            self._ways = {}
         if self._held is None or self._held[0] is not method:
             self._held = None  # lets go of the last one's factor first
             prepared = prepare(

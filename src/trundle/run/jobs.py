@@ -14,10 +14,10 @@ from trundle.response import (
 )
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import (
-    Crossing,
     Layout,
     PlaceResponses,
     PreparedFloor,
+    Source,
     lay_out,
     lay_out_places,
 )
@@ -46,8 +46,8 @@ class Job:
         What drives.
     method : MethodPlan
         By what method.
-    crossings : tuple of Crossing
-        The crossings on the first of the roads.
+    sources : tuple of Source
+        What acts, passages on the first of the roads.
     factors : mapping of str to float
         How many times rougher each road is than the first.
     parts : tuple of range
@@ -75,7 +75,7 @@ class Job:
     name: str
     case: Case
     method: MethodPlan
-    crossings: tuple[Crossing, ...]
+    sources: tuple[Source, ...]
     factors: Mapping[str, float]
     parts: tuple[range, ...]
     n_waves: int
@@ -118,22 +118,23 @@ def _jobs(
 ) -> Iterator[Job]:
     """Give the job at the study's own speeds, and one for each further speed that is mapped."""
     case, method = what
-    crossings = study.crossings(case, roads[0], method)
+    sources = study.acting(case, roads[0], method)
     first = study.roads[roads[0]].roughness
-    length = study.record_length(crossings)
+    length = study.record_length(sources)
     dt = method.interaction.integration.dt
-    size = runs_at_once(crossings, dt, length, len(study.points))
+    size = runs_at_once(sources, dt, length, len(study.points))
     n_parts = -(-study.runs // size)
     edges = np.linspace(0, study.runs, n_parts + 1).astype(int)
     modal = method.interaction.integration.f_max is not None
+    n_random = sum(source.random for source in sources)
     job = Job(
         name=name,
         case=case,
         method=method,
-        crossings=crossings,
+        sources=sources,
         factors={name: float(np.sqrt(study.roads[name].roughness / first)) for name in roads},
         parts=tuple(range(a, b) for a, b in itertools.pairwise(edges)),
-        n_waves=max(2, _WAVES // len(crossings)) if modal else 0,
+        n_waves=max(2, _WAVES // n_random) if modal and n_random else 0,
         points=study.points,
         duration=length,
         seed=study.seed,
@@ -145,11 +146,11 @@ def _jobs(
     )
     yield job
     for i, speed in enumerate(job.map.speeds if job.map is not None else ()):
-        there = study.at_speed(speed).crossings(case, roads[0], method)
+        there = study.at_speed(speed).acting(case, roads[0], method)
         yield replace(
             job,
             name=f"{name}-speed{i}",
-            crossings=there,
+            sources=there,
             parts=(),
             n_waves=0,
             duration=study.long_enough(there),
@@ -177,7 +178,7 @@ def lay_out_job(job: Job, floor: PreparedFloor) -> LaidOut:
     """Lay out what all parts of a job share."""
     layout = lay_out(
         floor,
-        job.crossings,
+        job.sources,
         method=job.method.interaction,
         points=job.points,
         duration=job.duration,

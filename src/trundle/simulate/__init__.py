@@ -20,7 +20,7 @@ from trundle.simulate.point_load import point_load_deflection
 from trundle.simulate.prepared import prepare
 from trundle.simulate.runs import MeanResponse, Runs
 from trundle.simulate.sources.crossing import Crossing
-from trundle.simulate.sources.source import Inputs, Source, WaveSet
+from trundle.simulate.sources.source import Inputs, KnownForces, Source, WaveSet
 from trundle.simulate.sources.waves import Waves, place_waves
 from trundle.simulate.spectral.harmonics import Harmonics, harmonics, mean_response
 from trundle.simulate.spectral.place_spectra import place_spectra
@@ -38,6 +38,7 @@ __all__ = [
     "Inputs",
     "Integration",
     "Interaction",
+    "KnownForces",
     "Layout",
     "MeanResponse",
     "Modal",

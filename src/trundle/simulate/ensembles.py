@@ -18,7 +18,6 @@ from trundle.simulate.laying_out import Place, lay_out, lay_out_on_rigid_ground
 from trundle.simulate.layout import Layout
 from trundle.simulate.runs import MeanResponse, Runs
 from trundle.simulate.sources.crossing import Crossing
-from trundle.simulate.sources.passage import as_sources
 from trundle.simulate.sources.source import Source
 from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import roads_under_wheels
@@ -207,9 +206,8 @@ def batch_size(layout: Layout) -> int:
     return _batch_size(layout.timeline, len(layout.contact_names), len(layout.point_names))
 
 
-def runs_at_once(crossings: tuple[Crossing, ...], dt: float, duration: float, n_points: int) -> int:
+def runs_at_once(sources: tuple[Source, ...], dt: float, duration: float, n_points: int) -> int:
     """Return the batch size of a layout that is not laid out yet."""
-    sources = as_sources(crossings)
     contacts = sum(len(source.contact_names) for source in sources)
     return _batch_size(timeline_of(sources, dt, duration), contacts, n_points)
 

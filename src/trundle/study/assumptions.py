@@ -64,8 +64,8 @@ def early_end_warnings(study: Study, case: Case) -> tuple[FitnessWarning, ...]:
     """Return the doubt about a record that ends while a wheel stands on the floor."""
     if study.duration is None:
         return ()
-    crossings = study.crossings(case, next(iter(study.roads)), study.methods[0])
-    leaves = max(crossing.exit_time for crossing in crossings)
+    sources = study.acting(case, next(iter(study.roads)), study.methods[0])
+    leaves = max(source.leaves for source in sources)
     if study.duration >= leaves:
         return ()
     return (

@@ -129,6 +129,6 @@ def _excited(study: Study, method: MethodPlan, bands: Array) -> Array:
     found = np.zeros(len(bands), dtype=bool)
     for case in study.cases:
         for road in study.roads:
-            crossings = study.crossings(case, road, method)
-            found |= coverage_of(crossings, study.record_length(crossings)).excites(bands)
+            sources = study.acting(case, road, method)
+            found |= coverage_of(sources, study.record_length(sources)).excites(bands)
     return found

@@ -14,6 +14,8 @@ from trundle.route import ConstantSpeed, Entry, Route
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import Crossing, Interaction
 from trundle.simulate.sources.crossing import TAIL
+from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.sources.source import Source
 from trundle.structure import Floor, FloorPlan
 from trundle.study.map_plan import MapPlan
 from trundle.vehicle import Vehicle
@@ -51,14 +53,14 @@ class Drive:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """Hold what drives at once: one route, or several.
+    """Hold what acts at once: one route or other source, or several.
 
     Attributes
     ----------
     name : str
-        Name of the route, or of the traffic.
+        Name of the route or source, or of the traffic.
     routes : tuple of str
-        Names of the routes driven together.
+        Names of what acts together.
     """
 
     name: str
@@ -165,6 +167,8 @@ class Study:
         Largest edge of an element [m].
     drives : mapping of str to Drive
         Routes by name.
+    sources : mapping of str to Source
+        Other sources of vibration by name.
     cases : tuple of Case
         Single routes first, then traffic.
     roads : mapping of str to RoadClass
@@ -189,7 +193,7 @@ class Study:
         Numbers that figures and tables bear in a publication, by their names in the report.
     force_speeds : tuple of float
         Speeds at which axle forces are drawn beside those of the routes [m/s].
-    sources : tuple of str
+    publications : tuple of str
         Publications that the study draws on.
     """
 
@@ -205,6 +209,7 @@ class Study:
     plan: FloorPlan
     mesh_size: float
     drives: Mapping[str, Drive]
+    sources: Mapping[str, Source]
     cases: tuple[Case, ...]
     roads: Mapping[str, RoadClass]
     band: RoughnessBand
@@ -219,7 +224,7 @@ class Study:
     notes: tuple[Note, ...]
     numbering: Mapping[str, str]
     force_speeds: tuple[float, ...]
-    sources: tuple[str, ...]
+    publications: tuple[str, ...]
 
     def __repr__(self) -> str:
         """Say in a line what is studied."""
@@ -250,18 +255,25 @@ class Study:
         """What the response is held against; nothing without an assessment."""
         return () if self.assessment is None else self.assessment.criteria
 
-    def crossings(self, case: Case, road: str, method: MethodPlan) -> tuple[Crossing, ...]:
-        """Return the crossings of one cell."""
-        return tuple(
-            Crossing(
-                vehicle=drive.vehicle,
-                route=drive.route,
-                road=self.roads[road],
-                band=self.band_for(drive, method),
-                entry=method.entry,
-                run_in=drive.run_in,
-            )
-            for drive in (self.drives[name] for name in case.routes)
+    def acting(self, case: Case, road: str, method: MethodPlan) -> tuple[Source, ...]:
+        """Return what acts in one cell: passages on the road, and other sources as they are."""
+        return as_sources(
+            [
+                self.sources[name]
+                if name in self.sources
+                else self._crossing(self.drives[name], road, method)
+                for name in case.routes
+            ]
+        )
+
+    def _crossing(self, drive: Drive, road: str, method: MethodPlan) -> Crossing:
+        return Crossing(
+            vehicle=drive.vehicle,
+            route=drive.route,
+            road=self.roads[road],
+            band=self.band_for(drive, method),
+            entry=method.entry,
+            run_in=drive.run_in,
         )
 
     def at_speed(self, speed: float) -> Study:
@@ -272,13 +284,13 @@ class Study:
         }
         return replace(self, drives=drives)
 
-    def record_length(self, crossings: Sequence[Crossing]) -> float:
-        """Return the length of a record of some crossings [s]: what was asked for, or enough."""
-        return self.long_enough(crossings) if self.duration is None else self.duration
+    def record_length(self, sources: Sequence[Source]) -> float:
+        """Return the length of a record of some sources [s]: what was asked for, or enough."""
+        return self.long_enough(sources) if self.duration is None else self.duration
 
-    def long_enough(self, crossings: Sequence[Crossing]) -> float:
-        """Return the length of a record in which crossings end and the floor comes to rest [s]."""
-        enough = max(one.exit_time for one in crossings) + TAIL
+    def long_enough(self, sources: Sequence[Source]) -> float:
+        """Return the length of a record in which sources end and the floor comes to rest [s]."""
+        enough = max(one.leaves for one in sources) + TAIL
         return max(self.duration or 0.0, float(np.ceil(enough)))
 
     @property
@@ -286,7 +298,7 @@ class Study:
         """Length of the longest record [s]."""
         road = next(iter(self.roads))
         return max(
-            self.record_length(self.crossings(case, road, self.methods[0])) for case in self.cases
+            self.record_length(self.acting(case, road, self.methods[0])) for case in self.cases
         )
 
     def band_for(self, drive: Drive, method: MethodPlan) -> RoughnessBand:

@@ -10,6 +10,7 @@ from pathlib import Path
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.signals import Isolation
+from trundle.simulate import Source
 from trundle.structure import FloorPlan
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Assessment, Drive, MethodPlan
@@ -41,6 +42,8 @@ class Draft:
         By name.
     drives : mapping of str to Drive
         Routes by name.
+    sources : mapping of str to Source
+        Other sources of vibration by name; a section adds its own.
     band : RoughnessBand or None
         Waves that roads contain.
     band_follows_dt : bool
@@ -64,6 +67,7 @@ class Draft:
     mesh_size: float = 1.0
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict[str, Vehicle])
     drives: Mapping[str, Drive] = field(default_factory=dict[str, Drive])
+    sources: Mapping[str, Source] = field(default_factory=dict[str, Source])
     band: RoughnessBand | None = None
     band_follows_dt: bool = True
     methods: Mapping[str, MethodPlan] = field(default_factory=dict[str, MethodPlan])

@@ -53,7 +53,11 @@ def map_views(result: StudyResult) -> list[MapView]:
     plan = result.study.map
     if plan is None or not result.maps:
         return []
-    driven = {case.name: case.routes for case in result.study.cases}
+    drives = result.study.drives
+    driven = {
+        case.name: tuple(name for name in case.routes if name in drives)
+        for case in result.study.cases
+    }
     single = single_maps(result)
     views: list[MapView] = []
     for speed in (None, *plan.speeds):

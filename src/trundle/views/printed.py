@@ -93,11 +93,13 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
         for case in study.cases
         if case.name in named
         for route in case.routes
+        if route in study.drives
     }
     singles = [
         case.name
         for case in study.cases
         if len(case.routes) == 1
+        and case.routes[0] in study.drives
         and (not theirs or study.drives[case.routes[0]].vehicle.name in theirs)
     ]
     many = [case.name for case in study.cases if len(case.routes) > 1]

@@ -48,7 +48,8 @@ def _histories(result: StudyResult) -> Iterator[Drawing]:
     study = result.study
     for (i, case), (j, point) in itertools.product(enumerate(study.cases), enumerate(study.points)):
         together = len(case.routes) > 1
-        what = "several vehicles at once" if together else f"route {case.name}"
+        alone = f"route {case.name}" if case.name in study.drives else case.name
+        what = "several vehicles at once" if together else alone
         yield Drawing(
             name=f"history_{i + 1}" + (f"_{j + 1}" if j else ""),
             title=f"Acceleration at {point}: {what}",

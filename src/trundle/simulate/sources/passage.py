@@ -75,6 +75,11 @@ class Passage:
         return self.crossing.start == "level"
 
     @property
+    def random(self) -> bool:
+        """Whether its road is drawn anew for every run."""
+        return isinstance(self.crossing.road, RoadClass)
+
+    @property
     def leaves(self) -> float:
         """Time at which the last wheel leaves [s]."""
         return self.crossing.exit_time
@@ -117,6 +122,10 @@ class Passage:
         if not isinstance(crossing.road, RoadClass):
             return ()
         return tuple(waves_under(crossing, crossing.road, crossing.along(time, begins), n_waves))
+
+    def stands_at(self, time: float) -> tuple[tuple[float, float] | None, int]:
+        """Return where the front axle stands at a time, None when off; and how many wheels do."""
+        return self.crossing.front_axle(time), self.crossing.wheels_on_floor(time)
 
     def excited_to(self, ends: float) -> float:
         """Return where the waves of the road end under the vehicle [Hz]."""

@@ -21,7 +21,7 @@ from trundle.route import Along, Track
 from trundle.structure import ContactShape, Structure
 from trundle.vehicle import Vehicle
 
-__all__ = ["Inputs", "Source", "WaveSet"]
+__all__ = ["Inputs", "KnownForces", "Source", "WaveSet"]
 
 
 @runtime_checkable
@@ -99,11 +99,7 @@ class WaveSet:
 
 @runtime_checkable
 class Source(Protocol):
-    """Something that makes a structure vibrate.
-
-    Whoever inherits from it need not say what does not hold for it: a vehicle, a start in
-    equilibrium, a run-in, anything random, a doubt.
-    """
+    """Something that makes a structure vibrate."""
 
     @property
     def name(self) -> str:
@@ -118,17 +114,22 @@ class Source(Protocol):
     @property
     def oscillator(self) -> Vehicle | None:
         """What moves over the contacts; None where the forces are known."""
-        return None
+        ...
 
     @property
     def standing(self) -> bool:
         """Whether it stands on the structure at time 0, in equilibrium with it."""
-        return False
+        ...
 
     @property
     def level(self) -> bool:
         """Whether its vehicle starts level, and not in equilibrium on the road."""
-        return False
+        ...
+
+    @property
+    def random(self) -> bool:
+        """Whether its inputs differ from run to run, as waves of a spectrum."""
+        ...
 
     @property
     def leaves(self) -> float:
@@ -137,8 +138,7 @@ class Source(Protocol):
 
     def begins(self, dt: float) -> float:
         """Return when it begins to move [s], whole steps before or after time 0."""
-        del dt
-        return 0.0
+        ...
 
     def track(self, time: Float[Array, " times"], begins: float) -> Track:
         """Return where its contacts are at some times [s]; before it begins it stands still."""
@@ -161,8 +161,11 @@ class Source(Protocol):
         self, time: Float[Array, " times"], begins: float, n_waves: int
     ) -> tuple[WaveSet, ...]:
         """Return the waves of what is random of it; none where nothing is."""
-        del time, begins, n_waves
-        return ()
+        ...
+
+    def stands_at(self, time: float) -> tuple[tuple[float, float] | None, int]:
+        """Return where its first contact stands at a time, None when off; and how many stand."""
+        ...
 
     def excited_to(self, ends: float) -> float:
         """Return to which frequency it excites a structure in a record of a length [s]."""
@@ -170,12 +173,54 @@ class Source(Protocol):
 
     def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
         """Refuse what a step [s] cannot show, before work starts; return doubts about it."""
+        ...
+
+    def doubts(
+        self, structure: Structure, modes: Modes | None, contact: ContactShape
+    ) -> tuple[FitnessWarning, ...]:
+        """Return what a result must say of it on a structure."""
+        ...
+
+
+class KnownForces:
+    """What holds for every source whose forces are known, for such a source to inherit.
+
+    It gives its name, its contacts by name, when its last leaves, its surface, its track and way,
+    its inputs, and to which frequency it excites; it has no vehicle, no run-in, no waves of a
+    spectrum, and no doubts unless it says so.
+    """
+
+    oscillator: Vehicle | None = None
+    standing = False
+    level = False
+    random = False
+
+    def begins(self, dt: float) -> float:
+        """Return 0: it acts from the record's start."""
+        del dt
+        return 0.0
+
+    def waves(
+        self, time: Float[Array, " times"], begins: float, n_waves: int
+    ) -> tuple[WaveSet, ...]:
+        """Return none."""
+        del time, begins, n_waves
+        return ()
+
+    def stands_at(self: Source, time: float) -> tuple[tuple[float, float] | None, int]:
+        """Return where its first contact stands at a time, None when off; and how many stand."""
+        track = self.track(np.array([time]), -np.inf)
+        on, first = track.share[0] > 0.0, track.place[0, 0]
+        return (float(first[0]), float(first[1])) if on[0] else None, int(on.sum())
+
+    def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
+        """Refuse nothing."""
         del dt, duration
         return ()
 
     def doubts(
         self, structure: Structure, modes: Modes | None, contact: ContactShape
     ) -> tuple[FitnessWarning, ...]:
-        """Return what a result must say of it on a structure."""
+        """Say nothing."""
         del structure, modes, contact
         return ()

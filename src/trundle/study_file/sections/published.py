@@ -74,7 +74,7 @@ def fields(draft: Draft) -> dict[str, Any]:
         "notes": tuple(Note(**dict(n)) for n in file.items("note")),
         "numbering": publication.numbers,
         "force_speeds": publication.force_speeds,
-        "sources": publication.sources,
+        "publications": publication.sources,
     }
 
 

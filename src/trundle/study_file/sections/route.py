@@ -80,9 +80,10 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
 
 def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the sections."""
-    singles = tuple(Case(name=name, routes=(name,)) for name in draft.drives)
+    alone = (*draft.drives, *draft.sources)
+    singles = tuple(Case(name=name, routes=(name,)) for name in alone)
     traffic = tuple(Case(name=t.name, routes=t.routes) for t in draft.file.items("traffic"))
-    return {"drives": draft.drives, "cases": singles + traffic}
+    return {"drives": draft.drives, "sources": draft.sources, "cases": singles + traffic}
 
 
 def problems(draft: Draft) -> Iterator[Problem]:
@@ -93,6 +94,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
         yield from _on_held_edges(draft.file, draft.plan)
     yield from _short_routes(draft.drives, draft.methods)
     named = [s.name for kind in ("route", "traffic") for s in draft.file.items(kind)]
+    named += draft.sources
     yield from unique("route and traffic", named)
 
 
@@ -100,7 +102,8 @@ def _traffic(draft: Draft) -> Iterator[Problem]:
     for i, section in draft.file.lists.get("traffic", []):
         for j, route in enumerate(section.routes):
             place = f"traffic[{i + 1}].routes[{j + 1}]"
-            yield from refer(place, route, draft.file.declared["route"], "route")
+            known = draft.file.declared["route"] | set(draft.sources)
+            yield from refer(place, route, known, "route")
         if len(set(section.routes)) < len(section.routes):
             yield Problem(
                 place=f"traffic[{i + 1}].routes",

@@ -86,7 +86,7 @@ class Layout:
 
     @cached_property
     def wheels(self) -> Wheels:
-        """Vehicles and time."""
+        """What a drive needs of vehicles and time."""
         return Wheels(
             contacts=Contacts.of(self.sources),
             timeline=self.timeline,

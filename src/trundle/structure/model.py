@@ -65,7 +65,7 @@ class Structure(Protocol):
 
     @property
     def mirrors(self) -> tuple[MirrorPlane, ...]:
-        """Planes of symmetry at which it ends."""
+        """Mirror planes at which it ends."""
         ...
 
     def surface(self, name: str | None = None) -> Surface:

@@ -56,7 +56,7 @@ class Passage:
 
     @property
     def contact_names(self) -> tuple[str, ...]:
-        """Its wheels by name."""
+        """Name of every wheel."""
         return self.crossing.vehicle.contact_names
 
     @property

@@ -103,12 +103,12 @@ class Source(Protocol):
 
     @property
     def name(self) -> str:
-        """Its name; what is random of it depends on the seed, this name and the run alone."""
+        """Name; what is random of it depends on the seed, this name and the run alone."""
         ...
 
     @property
     def contact_names(self) -> tuple[str, ...]:
-        """Its contacts by name."""
+        """Name of every contact."""
         ...
 
     @property

@@ -40,7 +40,7 @@ class Timeline:
 
     @property
     def record(self) -> Float[Array, " steps"]:
-        """Times of the record [s]."""
+        """Time of the record [s]."""
         return self.time[self.n_run_in :]
 
     @property

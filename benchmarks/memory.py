@@ -12,7 +12,7 @@ import sys
 import time
 
 import trundle as tr
-from trundle.response import join, reduce_rougher
+from trundle.response import join, reduce_on_scaled_roads
 from trundle.run.mode_cache import modes_of
 from trundle.simulate import Coupled, Crossing, Modal, batches, lay_out, mean_response, prepare
 
@@ -32,7 +32,7 @@ def run(n_runs: int) -> None:
     start = time.perf_counter()
     kept, mean = [], mean_response(layout)
     for part in batches(layout, runs=range(n_runs), seed=1):
-        kept.append(reduce_rougher(part, mean, [1.0])[0])
+        kept.append(reduce_on_scaled_roads(part, mean, [1.0])[0])
         del part  # before the next is computed
     seconds = time.perf_counter() - start
     assert len(join(kept).peak_acceleration) == n_runs

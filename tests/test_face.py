@@ -189,7 +189,12 @@ def test_results_that_a_stranger_made_up_are_refused_by_name(done, tmp_path):
     (cell, *_), (pair, *_) = result.cells.values(), result.maps.items()
     forged = {
         "index": (5, ("index",), cell),
-        "cell0000": ("x", (cell,), (replace(cell, top="80"), None), (replace(cell, key=None), ())),
+        "cell0000": (
+            "x",
+            (cell,),
+            (replace(cell, f_resolved="80"), None),
+            (replace(cell, key=None), ()),
+        ),
         "map0000": (pair[::-1], (pair[0], None)),
     }
     for name, values in forged.items():

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import trundle
-from studies import GOOD
+from studies import GOOD, MAP
 
 SOURCE = Path(trundle.__file__).parent
 ROOT = Path(__file__).parents[1]
@@ -205,6 +205,10 @@ ENTRIES = {
         long_name="mean square velocity over the record",
         heading="mean square velocity",
         measure=lambda h: np.mean(h.velocity**2, axis=1),
+        mapped=Mapped(
+            of="velocity", measure=lambda v: np.mean(v**2, axis=-1), figure="map_square",
+            title="Mean square velocity over the floor", word="mean square",
+        ),
     ),
 """,
     ),
@@ -336,8 +340,8 @@ print(json.dumps([record.sampling_frequency, float(record.samples.max())]))
 
 @pytest.mark.slow
 def test_a_quantity_is_one_row(house, tmp_path):
-    """In the arrays, the table and the report; the square of the RMS that stands beside it."""
-    (tmp_path / "study.toml").write_text(GOOD)
+    """In arrays, table, report and map; the square of the RMS that stands beside it."""
+    (tmp_path / "study.toml").write_text(GOOD + MAP)
     script = """
 import csv, json, sys
 from pathlib import Path
@@ -350,12 +354,18 @@ page = (out / "report.html").read_text()
 found = tree["/mean_square_velocity"]
 print(json.dumps([
     found.values.ravel().tolist(), tree["/rms_velocity"].values.ravel().tolist(),
+    tree["/maps/main/mean_square_velocity"].values.ravel().tolist(),
+    tree["/maps/main/rms_velocity"].values.ravel().tolist(),
+    (out / "figures" / "map_square.png").exists(),
     found.attrs["units"], "mean_square_velocity_p50_m2_s2" in row, "mean square velocity [m2/s2]" in page,
 ]))
 """
-    squares, rms, units, in_table, in_report = said(
+    squares, rms, mapped, mapped_rms, drawn, units, in_table, in_report = said(
         house, script, tmp_path / "study.toml", tmp_path / "out"
     )
+    # a percentile of squares is between the squares of the runs that it lies between
+    assert mapped == pytest.approx([v**2 for v in mapped_rms], rel=0.1)
+    assert drawn
     assert squares == pytest.approx([v**2 for v in rms], rel=1e-12)
     assert units == "m2/s2"
     assert in_table

@@ -76,8 +76,8 @@ def test_a_map_passes_no_class_without_waves():
     """Levels far below every limit: with waves the strictest class, without them none is known."""
     made = FloorMap(
         places=np.zeros((2, 2)), mid_band=BANDS, resolved=np.full(20, True), averaging="max_1s",
-        band_levels=np.full((3, 2, 20), 1e-9), rms_velocity=np.zeros((3, 2)),
-        peak_acceleration=np.zeros((3, 2)),
+        band_levels=np.full((3, 2, 20), 1e-9),
+        numbers={name: np.zeros((3, 2)) for name in ("rms_velocity", "peak_acceleration")},
     )  # fmt: skip
     for reach, expected in (
         (Coverage(excited_to=90.0), len(VC) - 1),

@@ -37,8 +37,8 @@ def test_nodes_on_a_held_edge_are_not_assessed(tmp_path, monkeypatch):
     np.testing.assert_array_equal(np.isnan(mapped.classes.margin), held[None])
     np.testing.assert_array_equal(np.isnan(mapped.classes.share_exceeding), held[None])
     assert (mapped.classes.classes()[held] == -2).all()
-    assert (mapped.rms_velocity[held] < 1e-12).all()
-    assert (mapped.rms_velocity[~held] > 1e-9).all()
+    assert (mapped.numbers["rms_velocity"][held] < 1e-12).all()
+    assert (mapped.numbers["rms_velocity"][~held] > 1e-9).all()
     with warnings.catch_warnings(), rc_context():
         warnings.simplefilter("error")
         write_results(result, tmp_path)

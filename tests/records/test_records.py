@@ -572,11 +572,11 @@ def test_levels_that_are_no_numbers_are_no_pass():
     reduced = assess_record(record, VC).reduced
     lost = replace(reduced.spectra, values=np.full_like(reduced.spectra.values, np.nan))
     with pytest.raises(ComputationError, match="not a finite number"):
-        assess_reduced(replace(reduced, spectra=lost), VC, percentile=100.0, top=80.0)
+        assess_reduced(replace(reduced, spectra=lost), VC, percentile=100.0, f_resolved=80.0)
     infinite = np.full_like(reduced.response_factor, np.inf)
     loud = replace(reduced, numbers={**reduced.numbers, "response_factor": infinite})
     with pytest.raises(ComputationError, match="not a finite number"):
-        assess_reduced(loud, find_criterion("R-office"), percentile=100.0, top=80.0)
+        assess_reduced(loud, find_criterion("R-office"), percentile=100.0, f_resolved=80.0)
 
 
 @pytest.mark.parametrize("start", [0.0, 1000.0, 1.7e9])

@@ -191,8 +191,7 @@ def test_a_map_is_no_pass_where_bands_are_missing():
     resolved = mid_band_frequencies() < 55.0
     made = FloorMap(
         places=np.zeros((2, 2)), mid_band=mid_band_frequencies(), resolved=resolved,
-        averaging="max_1s", band_levels=levels, rms_velocity=np.zeros((3, 2)),
-        peak_acceleration=np.zeros((3, 2)),
+        averaging="max_1s", band_levels=levels, numbers={n: np.zeros((3, 2)) for n in ("rms_velocity", "peak_acceleration")},
     )  # fmt: skip
     partial = class_map(made, VC, percentile=50.0, f_max=60.0)
     assert not any(partial.complete)

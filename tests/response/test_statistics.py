@@ -106,7 +106,7 @@ def test_quadrature_error_falls_as_waves_are_added(layout, exact):
 
 
 def test_twice_the_road_is_four_times_the_variance(exact):
-    twice = exact.rougher(2.0)
+    twice = exact.on_scaled_road(2.0)
     for name in ("velocity", "contact_forces"):
         np.testing.assert_allclose(twice.std(name), 2 * exact.std(name), rtol=1e-12)
         np.testing.assert_array_equal(twice.mean[name], exact.mean[name])
@@ -200,7 +200,7 @@ def test_peaks_on_rougher_roads_are_those_of_their_own_draws():
     for factor in (0.3, 1.0, 1.3, 2.0, 4.0, 16.0):
         own = exact_statistics([drawn(factor * waves, static)])
         np.testing.assert_allclose(
-            one.rougher(factor).peaks([50, 95]), own.peaks([50, 95]), rtol=0.01
+            one.on_scaled_road(factor).peaks([50, 95]), own.peaks([50, 95]), rtol=0.01
         )
 
 

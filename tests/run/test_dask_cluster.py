@@ -11,7 +11,7 @@ from trundle._progress import silent
 from trundle.errors import ComputationError, InputError
 from trundle.run import dask_cluster
 from trundle.run.dask_cluster import Cluster, cluster_at, local_cluster
-from trundle.run.jobs import LaidOut, plan_jobs
+from trundle.run.jobs import PreparedJob, plan_jobs
 from trundle.run.tasks import tasks_of
 from trundle.study_file.build import load_study
 
@@ -58,7 +58,7 @@ def test_a_layout_is_never_taken_for_one_that_was_let_go_of(tmp_path, monkeypatc
     client, found = Client(), []
     cluster = Cluster(client)
     for i in range(50):
-        laid_out = LaidOut(layout=i, places=None)
+        laid_out = PreparedJob(layout=i, places=None)
         for task in tasks:
             cluster.submit(task, laid_out, silent)
         found += [layout for _name, layout in cluster.finished(wait=False)]
@@ -119,7 +119,7 @@ def test_a_lost_scheduler_is_named(monkeypatch, tmp_path):
     client = Client()
     cluster = Cluster(client)
     del second
-    cluster.submit(first, LaidOut(layout=1, places=None), silent)
+    cluster.submit(first, PreparedJob(layout=1, places=None), silent)
     client.status = "closed"
     with pytest.raises(ComputationError, match="what was finished is kept"):
         list(cluster.finished(wait=True))
@@ -138,7 +138,7 @@ def test_parts_lost_while_they_are_waited_for_are_sent_again(monkeypatch, tmp_pa
     monkeypatch.setattr(dask_cluster, "_distributed", lambda: lost)
     (tmp_path / "study.toml").write_text(GOOD)
     first, second = tasks_of(plan_jobs(load_study(tmp_path / "study.toml"))[0])[:2]
-    cluster, laid_out = Cluster(Client()), LaidOut(layout=7, places=None)
+    cluster, laid_out = Cluster(Client()), PreparedJob(layout=7, places=None)
     for task in (first, second):
         cluster.submit(task, laid_out, silent)
     assert [layout for _name, layout in cluster.finished(wait=True)] == [7, 7]

@@ -33,7 +33,7 @@ def test_a_place_of_the_map_is_what_a_point_there_gives(tmp_path):
     assert mapped.classes.governing_band[0, at] == pytest.approx(verdict.governing_band)
     (cell,) = result.cells.values()
     expected = np.percentile(cell.rms_velocity[:, 0], 95.0)
-    assert mapped.rms_velocity[at] == pytest.approx(expected, rel=1e-3)
+    assert mapped.numbers["rms_velocity"][at] == pytest.approx(expected, rel=1e-3)
 
 
 def test_a_rougher_road_has_its_own_map(tmp_path):
@@ -49,7 +49,7 @@ def test_a_rougher_road_has_its_own_map(tmp_path):
     )  # fmt: skip
     (mapped,) = (m for key, m in result.maps.items() if key.road == "C")
     peaks = np.percentile(alone.peak_acceleration(), 95.0, axis=0)
-    np.testing.assert_allclose(mapped.peak_acceleration, peaks, rtol=1e-3)
+    np.testing.assert_allclose(mapped.numbers["peak_acceleration"], peaks, rtol=1e-3)
     stepper = mapped.classes.index("stepper-B")
     np.testing.assert_allclose(mapped.classes.margin[stepper], 0.001 / peaks, rtol=1e-3)
 
@@ -61,10 +61,12 @@ def test_a_map_at_another_speed_is_that_of_its_own_study(tmp_path):
     slow = LONG.replace('"15 km/h"', '"12 km/h"') + MAP
     (expected,) = run_study(study_of(tmp_path, slow)).maps.values()
     found = result.maps[MapKey("main", "B", 12 * KMH)]
-    np.testing.assert_allclose(found.rms_velocity, expected.rms_velocity, rtol=1e-5)
+    np.testing.assert_allclose(
+        found.numbers["rms_velocity"], expected.numbers["rms_velocity"], rtol=1e-5
+    )
     np.testing.assert_allclose(found.classes.margin, expected.classes.margin, rtol=1e-5)
     own = result.maps[MapKey("main", "B")]
-    assert np.abs(own.rms_velocity / found.rms_velocity - 1).max() > 0.1
+    assert np.abs(own.numbers["rms_velocity"] / found.numbers["rms_velocity"] - 1).max() > 0.1
     groups = map_groups(result)
     assert set(groups) == {"/maps/main", "/map_speeds/main", "/map_envelope"}
     there = groups["/map_speeds/main"]["margin"].sel(speed=12 * KMH, road="B", criterion="VC-A")
@@ -94,7 +96,7 @@ def test_every_node_at_every_step_is_what_a_point_there_gives(tmp_path):
     assert mapped.classes.margin[0, at] == pytest.approx(verdict.margin, rel=1e-4)
     (cell,) = result.cells.values()
     expected = np.percentile(cell.peak_acceleration[:, 0], 95.0)
-    assert mapped.peak_acceleration[at] == pytest.approx(expected, rel=1e-3)
+    assert mapped.numbers["peak_acceleration"][at] == pytest.approx(expected, rel=1e-3)
 
 
 def test_traffic_is_mapped_when_asked_for(tmp_path):
@@ -108,7 +110,7 @@ def test_traffic_is_mapped_when_asked_for(tmp_path):
     result = run_study(study_of(tmp_path, more + MAP))
     assert {key.case for key in result.maps} == {"main", "other"}
     result = run_study(study_of(tmp_path, more + MAP + "traffic = true\n"))
-    levels = {key.case: one.rms_velocity for key, one in result.maps.items()}
+    levels = {key.case: one.numbers["rms_velocity"] for key, one in result.maps.items()}
     assert set(levels) == {"main", "other", "both"}
     assert np.all(levels["both"] > np.minimum(levels["main"], levels["other"]))
 

@@ -126,7 +126,7 @@ def test_a_rougher_road_is_the_same_run_scaled_about_the_smooth_one():
     settings = {"method": method, "points": POINTS, "duration": 2.5}
     layout = lay_out(floor, way(), **settings)
     runs = next(batches(layout, runs=range(3), seed=1))
-    scaled = runs.rougher(mean_response(layout), np.sqrt(2.0))
+    scaled = runs.on_scaled_road(mean_response(layout), np.sqrt(2.0))
     direct = ensemble(floor, way(level="upper"), **settings, n_runs=3, seed=1)
     for name in ("velocity", "acceleration", "contact_forces"):
         assert difference(getattr(scaled, name), getattr(direct, name)) < 1e-9

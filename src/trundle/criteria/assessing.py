@@ -16,7 +16,7 @@ from trundle.criteria.verdict import STILL, BandOutcomes, Status, Verdict
 from trundle.errors import ComputationError
 from trundle.response import (
     BandSpectra,
-    Reduced,
+    RunLevels,
     SpectrumQuantity,
     percentile_interval,
     reduce_runs,
@@ -61,7 +61,7 @@ def assess(
         reduce_runs(runs, averaging=averaging, quantities=spectra_asked_for(many)),
         many,
         percentile=percentile,
-        top=runs.top,
+        f_resolved=runs.f_resolved,
         events=events,
         coverage=runs.coverage,
     )
@@ -76,11 +76,11 @@ def spectra_asked_for(criteria: Iterable[Criterion]) -> tuple[SpectrumQuantity, 
 
 @kinds_checked
 def assess_reduced(
-    reduced: Reduced,
+    reduced: RunLevels,
     criteria: Criterion | Sequence[Criterion],
     *,
     percentile: float,
-    top: float,
+    f_resolved: float,
     events: float = 1.0,
     coverage: Coverage | None = None,
     axes: Sequence[str] | None = None,
@@ -89,13 +89,13 @@ def assess_reduced(
 
     Parameters
     ----------
-    reduced : Reduced
+    reduced : RunLevels
         Levels and peaks of every run; with the spectra that the criteria need.
     criteria : Criterion or sequence of Criterion
         The curves.
     percentile : float
         Share of runs that the compared level must cover, 0 to 100.
-    top : float
+    f_resolved : float
         Highest frequency that single numbers contain [Hz].
     events : float
         How many such events a vibration dose is for.
@@ -122,7 +122,7 @@ def assess_reduced(
                 verdict = _by_band(one, i, point, criterion, percentile, coverage=coverage)
             else:
                 values, times = _numbers(reduced, i, criterion, events)
-                reach = (top, coverage)
+                reach = (f_resolved, coverage)
                 verdict = _by_number(values, times, point, criterion, percentile, reach=reach)
             verdicts.append(replace(verdict, axis=axis))
     return tuple(verdicts)
@@ -149,7 +149,7 @@ def _of_another_axis(criterion: Criterion, point: str, percentile: float, reason
 
 
 def _numbers(
-    reduced: Reduced, point: int, criterion: Criterion, events: float
+    reduced: RunLevels, point: int, criterion: Criterion, events: float
 ) -> tuple[Array, Array]:
     """Return a single number of every run, and when it occurred."""
     if criterion.quantity == "peak_acceleration":
@@ -299,11 +299,11 @@ def _by_number(
     value = float(np.percentile(values, percentile))
     margin = limit / max(value, np.finfo(float).tiny)
     # A broadband number covers the curve only as far as the computation reaches.
-    (top, coverage), asked = (
+    (f_resolved, coverage), asked = (
         reach,
         float(min(criterion.frequencies[-1], TOP_FREQUENCY)) * (1 - 1e-6),
     )
-    missing = () if top >= asked else (round(asked, 1),)
+    missing = () if f_resolved >= asked else (round(asked, 1),)
     unexcited = () if coverage.excited_to >= asked else (round(asked, 1),)
     reasons = (
         *_not_shown(missing),

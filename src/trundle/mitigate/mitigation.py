@@ -24,7 +24,7 @@ from trundle.run.checkpoint import InMemory, PieceStore
 from trundle.run.estimate import mode_seconds, size_of
 from trundle.run.executor import Batch, Executor, carry_out
 from trundle.run.floors import Floors
-from trundle.run.jobs import lay_out_job
+from trundle.run.jobs import prepare_job
 from trundle.run.mode_cache import modes_of
 from trundle.run.progress import Bar
 from trundle.run.threads import Threads
@@ -186,7 +186,7 @@ def _batches(slab: Study, combinations: Sequence[Combination], modes: Modes | No
             job=one.job,
             tasks=one.tasks(slab),
             floor=slab.floor,
-            lay_out=lambda job=one.job: lay_out_job(job, floors.of(job)),
+            lay_out=lambda job=one.job: prepare_job(job, floors.of(job)),
         )
         for one in combinations
     ]
@@ -236,7 +236,7 @@ def _of_change(study: Study, one: Combination, label: str, runs: RunsPart) -> li
                 runs.reduced[i],
                 assessment.criteria,
                 percentile=assessment.percentile,
-                top=runs.top,
+                f_resolved=runs.f_resolved,
                 coverage=runs.coverage,
                 events=assessment.events,
             ),

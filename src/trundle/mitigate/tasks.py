@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from trundle._progress import Progress
-from trundle.response import behind_isolators, reduce_rougher
+from trundle.response import behind_isolators, reduce_on_scaled_roads
 from trundle.results.parts import ChangesPart, runs_part
 from trundle.run.costs import Size, runs_seconds
-from trundle.run.jobs import Job, LaidOut
+from trundle.run.jobs import Job, PreparedJob
 from trundle.signals import Isolation
 from trundle.simulate import runs_with_mean
 
@@ -43,7 +43,7 @@ class ChangesTask:
         """Return about how long it takes."""
         return runs_seconds(self.job, self.job.parts[self.number], size)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> ChangesPart:
+    def compute(self, laid_out: PreparedJob, progress: Progress | None = None) -> ChangesPart:
         """Run the roads on the first class, and scale the others from them, for each change."""
         job = self.job
         runs, mean = runs_with_mean(
@@ -53,7 +53,7 @@ class ChangesTask:
             variants=tuple(
                 runs_part(
                     behind_isolators(runs, isolations),
-                    reduce_rougher(
+                    reduce_on_scaled_roads(
                         behind_isolators(runs, isolations),
                         behind_isolators(mean, isolations),
                         list(job.factors.values()),

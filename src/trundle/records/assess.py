@@ -22,7 +22,7 @@ from trundle.criteria import (
 )
 from trundle.errors import FitnessWarning, InputError
 from trundle.response import (
-    Reduced,
+    RunLevels,
     level_warnings,
     reduce_record,
 )
@@ -72,7 +72,7 @@ class RecordResult:
         The record in SI.
     runs : Runs
         Its motion, channels as points.
-    reduced : Reduced
+    reduced : RunLevels
         Levels and peaks of every channel.
     criteria : tuple of Criterion
         What it is held against.
@@ -88,7 +88,7 @@ class RecordResult:
 
     record: Record
     runs: Runs
-    reduced: Reduced
+    reduced: RunLevels
     criteria: tuple[Criterion, ...]
     verdicts: tuple[Verdict, ...]
     averaging: Averaging
@@ -163,9 +163,9 @@ def assess_record(
         averaging=averaging,
         quantities=spectra_asked_for(many),
     )
-    top = band_limit(record.sampling_frequency)
+    f_resolved = band_limit(record.sampling_frequency)
     found = assess_reduced(
-        reduced, many, percentile=100.0, top=top, events=events, axes=record.axes
+        reduced, many, percentile=100.0, f_resolved=f_resolved, events=events, axes=record.axes
     )
     doubtful = doubtful_channels(record)
     verdicts = tuple(_unless_in_doubt(verdict, record, doubtful) for verdict in found)

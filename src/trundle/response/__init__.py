@@ -8,10 +8,10 @@ from trundle.response.measured import reduce_record
 from trundle.response.peaks import LargestValues
 from trundle.response.quantities import QUANTITIES, Quantity, tabled
 from trundle.response.reduction import (
-    Reduced,
+    RunLevels,
     join,
     percentile_interval,
-    reduce_rougher,
+    reduce_on_scaled_roads,
     reduce_runs,
 )
 from trundle.response.size_doubts import size_warnings
@@ -30,7 +30,7 @@ __all__ = [
     "FloorMap",
     "LargestValues",
     "Quantity",
-    "Reduced",
+    "RunLevels",
     "SpectrumQuantity",
     "UpperBounds",
     "behind_isolators",
@@ -41,8 +41,8 @@ __all__ = [
     "level_warnings",
     "percentile_interval",
     "percentile_rank",
+    "reduce_on_scaled_roads",
     "reduce_record",
-    "reduce_rougher",
     "reduce_runs",
     "size_warnings",
     "spectra_of",

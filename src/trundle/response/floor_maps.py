@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
@@ -13,6 +14,7 @@ from trundle._checks import one_of
 from trundle._progress import Progress
 from trundle._threads import n_threads
 from trundle._typing import Array
+from trundle.response.quantities import mapped
 from trundle.signals import (
     Averaging,
     band_edges,
@@ -48,10 +50,8 @@ class FloorMap:
         Averaging rule of the band levels.
     band_levels : ndarray of float, shape (n_runs, n_places, n_bands)
         RMS velocity in one-third octaves [m/s]; NaN in bands that are not resolved.
-    rms_velocity : ndarray of float, shape (n_runs, n_places)
-        RMS velocity over the record [m/s].
-    peak_acceleration : ndarray of float, shape (n_runs, n_places)
-        Largest absolute acceleration [m/s2]; NaN where it was not asked for.
+    numbers : mapping of str to ndarray, shape (n_runs, n_places)
+        Quantities that are mapped, by their names; NaN where one was not asked for.
     """
 
     places: Float[Array, "places 2"]
@@ -59,21 +59,29 @@ class FloorMap:
     resolved: Bool[Array, " bands"]
     averaging: Averaging
     band_levels: Float[Array, "runs places bands"]
-    rms_velocity: Float[Array, "runs places"]
-    peak_acceleration: Float[Array, "runs places"]
+    numbers: Mapping[str, Array]
 
     @property
     def n_runs(self) -> int:
         """Number of runs."""
-        return len(self.rms_velocity)
+        return len(self.band_levels)
+
+    @property
+    def rms_velocity(self) -> Float[Array, "runs places"]:
+        """RMS velocity over the record [m/s]."""
+        return self.numbers["rms_velocity"]
+
+    @property
+    def peak_acceleration(self) -> Float[Array, "runs places"]:
+        """Largest absolute acceleration [m/s2]; NaN where it was not asked for."""
+        return self.numbers["peak_acceleration"]
 
     def part(self, runs: slice) -> FloorMap:
         """Return some of the runs."""
         return replace(
             self,
             band_levels=self.band_levels[runs],
-            rms_velocity=self.rms_velocity[runs],
-            peak_acceleration=self.peak_acceleration[runs],
+            numbers={name: values[runs] for name, values in self.numbers.items()},
         )
 
 
@@ -121,7 +129,7 @@ def floor_map(
     resolved = usable_bands(mid_band, fs) & (band_edges(mid_band)[:, 1] <= f_max)
     kind = np.float32 if responses.single else np.float64
     levels = np.full((n_runs, n_places, len(mid_band)), np.nan, dtype=kind)
-    rms, peak = np.empty((n_runs, n_places)), np.empty((n_runs, n_places))
+    numbers = {quantity.name: np.full((n_runs, n_places), np.nan) for quantity, _ in mapped()}
     lines = _Lines(responses, mid_band[resolved], averaging, every_step=every_step)
     with ThreadPoolExecutor(n_threads()) as pool:
         spectra = place_spectra(responses, forces, acceleration=peaks, progress=progress)
@@ -129,24 +137,23 @@ def floor_map(
 
             def reduce(
                 run: int, velocity: Array = velocity, acceleration: Array | None = acceleration
-            ) -> tuple[Array, Array, Array]:
+            ) -> tuple[dict[str, Array], Array]:
                 """Reduce one run; its lines stay in cache."""
                 return lines.reduced(
                     velocity[run], None if acceleration is None else acceleration[run]
                 )
 
             found = list(pool.map(reduce, range(len(velocity))))
-            rms[runs, places] = [one[0] for one in found]
-            peak[runs, places] = [one[1] for one in found]
-            levels[runs, places, resolved] = [one[2] for one in found]
+            for name in found[0][0]:
+                numbers[name][runs, places] = [one[0][name] for one in found]
+            levels[runs, places, resolved] = [one[1] for one in found]
     return FloorMap(
         places=responses.places,
         mid_band=mid_band,
         resolved=resolved,
         averaging=averaging,
         band_levels=levels,
-        rms_velocity=rms,
-        peak_acceleration=peak,
+        numbers=numbers,
     )
 
 
@@ -178,18 +185,19 @@ class _Lines:
 
     def reduced(
         self, rows: Complex[Array, "places lines"], acceleration: Array | None
-    ) -> tuple[Array, Array, Array]:
-        """Return RMS velocity, peak acceleration and band levels of one run."""
-        rms = np.sqrt(np.mean(self._record(rows) ** 2, axis=-1))
-        peak = np.full(len(rows), np.nan)
-        if acceleration is not None:
-            record = self._record(acceleration)
-            peak = np.maximum(record.max(axis=-1), -record.min(axis=-1))
+    ) -> tuple[dict[str, Array], Array]:
+        """Return the quantities of one run by name, and its band levels."""
+        numbers: dict[str, Array] = {}
+        for of, lines in (("velocity", rows), ("acceleration", acceleration)):
+            if lines is not None:
+                record = self._record(lines)
+                here = ((quantity, how) for quantity, how in mapped() if how.of == of)
+                numbers |= {quantity.name: how.measure(record) for quantity, how in here}
         if self._averaging == "event":
             bands = np.sqrt((np.real(rows) ** 2 + np.imag(rows) ** 2) @ self._weights)
         else:
             bands = np.stack([band.largest(rows) for band in self._bands], axis=-1)
-        return rms, peak, bands
+        return numbers, bands
 
     def _record(self, rows: Complex[Array, "places lines"]) -> Float[Array, "places steps"]:
         """Return the history over the record, without what rings behind it."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trundle.response.reduction import Reduced, reduce_runs
+from trundle.response.reduction import RunLevels, reduce_runs
 from trundle.response.spectra import BandSpectra, SpectrumQuantity
 from trundle.signals import Averaging, Record, record_warnings, wide_motion_of
 from trundle.simulate import Runs
@@ -21,7 +21,7 @@ def reduce_record(
     high_pass: float = 0.5,
     averaging: Averaging = "max_1s",
     quantities: Iterable[SpectrumQuantity] = (),
-) -> tuple[Runs, Reduced]:
+) -> tuple[Runs, RunLevels]:
     """Return a record as one run, its channels as points, and its levels.
 
     Bands of which the record holds fewer than 8 periods are not resolved.
@@ -71,7 +71,7 @@ def _seen(wide: Runs, seen: slice) -> Runs:
     )
 
 
-def _without_short_bands(reduced: Reduced, record: Record) -> Reduced:
+def _without_short_bands(reduced: RunLevels, record: Record) -> RunLevels:
     """Return levels without those of bands of which the record holds fewer than 8 periods."""
 
     def held(spectra: BandSpectra) -> BandSpectra:

@@ -45,7 +45,7 @@ class LargestValues:
     mean: Float[Array, "candidates draws points"]
     random: Float[Array, "candidates draws points"]
 
-    def rougher(self, factor: float) -> LargestValues:
+    def on_scaled_road(self, factor: float) -> LargestValues:
         """Return the values on a road whose elevation is so many times larger."""
         return LargestValues(mean=self.mean, random=factor * self.random)
 

@@ -1,7 +1,7 @@
 """Say which single numbers are kept of every run: one row of a table each.
 
-What is kept of runs, the labelled arrays, ``summary.csv`` and the tables of screen and report loop
-over `QUANTITIES`; a further quantity is a further row here.
+What is kept of runs, the labelled arrays, ``summary.csv``, the tables of screen and report, maps
+and their pictures loop over `QUANTITIES`; a further quantity is a further row here.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.signals import mtvv, vibration_dose_value
 
-__all__ = ["QUANTITIES", "Histories", "Quantity", "tabled"]
+__all__ = ["QUANTITIES", "Histories", "Mapped", "Quantity", "mapped", "tabled"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,6 +49,32 @@ class Histories:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class Mapped:
+    """Hold how a number is mapped over a floor.
+
+    Attributes
+    ----------
+    of : {"velocity", "acceleration"}
+        Motion that it is measured on; acceleration is mapped where it is asked for.
+    measure : callable
+        Takes the motion of some places over the record, shape (n_places, n_steps); returns an
+        array of shape (n_places,).
+    figure : str
+        What its picture is called.
+    title : str
+        What stands above it.
+    word : str
+        What it is called beside the pointer.
+    """
+
+    of: Literal["velocity", "acceleration"]
+    measure: Callable[[Float[Array, "places steps"]], Float[Array, " places"]]
+    figure: str
+    title: str
+    word: str
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Quantity:
     """Hold one number that is kept of every run.
 
@@ -66,6 +92,8 @@ class Quantity:
         What there is one of.
     stored : bool
         Whether it is among the labelled arrays.
+    mapped : Mapped or None
+        How it is mapped over a floor; None if it is not.
     measure : callable
         Takes `Histories`; returns an array of shape (n_runs, n_points or n_contacts).
     """
@@ -76,6 +104,7 @@ class Quantity:
     heading: str = ""
     per: Literal["point", "contact"] = "point"
     stored: bool = True
+    mapped: Mapped | None = None
     measure: Callable[[Histories], Array]
 
 
@@ -85,6 +114,13 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="m/s2",
         long_name="largest absolute acceleration",
         heading="peak acceleration",
+        mapped=Mapped(
+            of="acceleration",
+            measure=lambda a: np.maximum(a.max(axis=-1), -a.min(axis=-1)),
+            figure="map_peak",
+            title="Peak acceleration over the floor",
+            word="peak",
+        ),
         measure=lambda h: np.abs(h.acceleration).max(axis=1),
     ),
     Quantity(
@@ -99,6 +135,13 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="m/s",
         long_name="RMS velocity over the record",
         heading="record RMS velocity",
+        mapped=Mapped(
+            of="velocity",
+            measure=lambda v: np.sqrt(np.mean(v**2, axis=-1)),
+            figure="map_rms",
+            title="RMS velocity over the floor",
+            word="record RMS",
+        ),
         measure=lambda h: np.sqrt(np.mean(h.velocity**2, axis=1)),
     ),
     Quantity(
@@ -137,3 +180,9 @@ QUANTITIES: tuple[Quantity, ...] = (
 def tabled() -> tuple[Quantity, ...]:
     """Return the quantities that have columns in tables."""
     return tuple(quantity for quantity in QUANTITIES if quantity.heading)
+
+
+def mapped() -> tuple[tuple[Quantity, Mapped], ...]:
+    """Return the quantities that are mapped, those of velocity first."""
+    found = [(quantity, quantity.mapped) for quantity in QUANTITIES if quantity.mapped is not None]
+    return tuple(sorted(found, key=lambda pair: pair[1].of != "velocity"))

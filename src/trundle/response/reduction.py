@@ -22,13 +22,13 @@ from trundle.signals import (
 )
 from trundle.simulate import MeanResponse, Runs
 
-__all__ = ["Reduced", "join", "percentile_interval", "reduce_rougher", "reduce_runs"]
+__all__ = ["RunLevels", "join", "percentile_interval", "reduce_on_scaled_roads", "reduce_runs"]
 
 _TOGETHER = 64  # runs whose filtered histories are held at once
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Reduced:
+class RunLevels:
     """Hold what is kept of every run.
 
     Attributes
@@ -89,7 +89,7 @@ def reduce_runs(
     quantities: Iterable[SpectrumQuantity] = (),
     record: slice | None = None,
     horizontal: Sequence[int] = (),
-) -> Reduced:
+) -> RunLevels:
     """Reduce the histories of some runs.
 
     Parameters
@@ -124,21 +124,21 @@ def reduce_runs(
         base=base,
         contact_forces=runs.contact_forces,
     )
-    return Reduced(
+    return RunLevels(
         numbers={quantity.name: quantity.measure(histories) for quantity in QUANTITIES},
         spectra=spectra_of(runs, "band_rms_velocity", averaging=averaging, record=record),
         more={name: spectra_of(runs, name, averaging=averaging, record=record) for name in wanted},
     )
 
 
-def reduce_rougher(
+def reduce_on_scaled_roads(
     runs: Runs,
     mean: MeanResponse,
     factors: Sequence[float],
     *,
     averaging: Averaging = "max_1s",
     quantities: Iterable[SpectrumQuantity] = (),
-) -> list[Reduced]:
+) -> list[RunLevels]:
     """Reduce some runs as they are on roads of other roughness.
 
     Parameters
@@ -156,22 +156,22 @@ def reduce_rougher(
 
     Returns
     -------
-    list of Reduced
+    list of RunLevels
         One for each factor.
     """
-    found: list[list[Reduced]] = [[] for _ in factors]
+    found: list[list[RunLevels]] = [[] for _ in factors]
     for start in range(0, runs.n_runs, _TOGETHER):
         some = runs.part(slice(start, start + _TOGETHER))
         for kept, factor in zip(found, factors, strict=True):
-            rougher = some.rougher(mean, factor)
+            rougher = some.on_scaled_road(mean, factor)
             kept.append(reduce_runs(rougher, averaging=averaging, quantities=quantities))
     return [join(parts) for parts in found]
 
 
-def join(parts: Sequence[Reduced]) -> Reduced:
+def join(parts: Sequence[RunLevels]) -> RunLevels:
     """Put the runs of several parts behind each other."""
     first = parts[0]
-    return Reduced(
+    return RunLevels(
         numbers={
             name: np.concatenate([part.numbers[name] for part in parts]) for name in first.numbers
         },

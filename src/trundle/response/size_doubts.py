@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from trundle.errors import FitnessWarning
-from trundle.response.reduction import Reduced
+from trundle.response.reduction import RunLevels
 
 __all__ = ["size_warnings"]
 
@@ -13,18 +13,18 @@ _MOST, _LEAST = 100.0, 1e-7  # m/s2: ten times gravity, a hundredth of what sens
 _FASTEST = 1.0  # m/s
 
 
-def size_warnings(reduced: Mapping[str, Reduced]) -> tuple[FitnessWarning, ...]:
+def size_warnings(reduced: Mapping[str, RunLevels]) -> tuple[FitnessWarning, ...]:
     """Return the doubts about motion that is too large or too small to be meant.
 
     Parameters
     ----------
-    reduced : mapping of str to Reduced
+    reduced : mapping of str to RunLevels
         What is kept of every run, by what drove.
     """
     return tuple(doubt for name, one in reduced.items() for doubt in _doubts(name, one))
 
 
-def _doubts(name: str, reduced: Reduced) -> Iterator[FitnessWarning]:
+def _doubts(name: str, reduced: RunLevels) -> Iterator[FitnessWarning]:
     remedy = "see whether a mass, a stiffness, a thickness or a speed has the wrong unit"
     for i, point in enumerate(reduced.spectra.point_names):
         peak = float(reduced.peak_acceleration[:, i].max())

@@ -102,13 +102,13 @@ class ExactStatistics:
         """Return `peak` for several shares at once."""
         return self.largest[quantity].levels(shares)
 
-    def rougher(self, factor: float) -> ExactStatistics:
+    def on_scaled_road(self, factor: float) -> ExactStatistics:
         """Return the statistics for a road whose elevation is so many times larger."""
         square = factor**2
         return replace(
             self,
             variance={name: square * value for name, value in self.variance.items()},
-            largest={name: value.rougher(factor) for name, value in self.largest.items()},
+            largest={name: value.on_scaled_road(factor) for name, value in self.largest.items()},
             band_variance=square * self.band_variance,
         )
 

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
-from trundle.response import BandSpectra, ExactStatistics, Reduced
+from trundle.response import BandSpectra, ExactStatistics, RunLevels
 from trundle.simulate import Coverage, TruncationChange
 
 __all__ = ["EXACT_SHARES", "Cell", "CellKey", "History"]
@@ -55,7 +55,7 @@ class Cell:
     ----------
     key : CellKey
         Which cell.
-    reduced : Reduced
+    reduced : RunLevels
         What is kept of every run.
     contact_names : tuple of str
         Names of the contacts.
@@ -67,7 +67,7 @@ class Cell:
         What some more modes left out would change, on the first road of its waviness.
     history : History
         The first run in time.
-    top : float
+    f_resolved : float
         Highest frequency that its levels can be trusted to [Hz].
     coverage : Coverage
         Which bands the road excites, and whether the vehicles have left.
@@ -76,13 +76,13 @@ class Cell:
     """
 
     key: CellKey
-    reduced: Reduced
+    reduced: RunLevels
     contact_names: tuple[str, ...]
     exact: ExactStatistics | None
     exact_peaks: Float[Array, "shares points"] | None
     truncation: TruncationChange | None
     history: History
-    top: float
+    f_resolved: float
     coverage: Coverage
     warnings: tuple[FitnessWarning, ...]
 

@@ -18,7 +18,7 @@ import numpy as np
 from trundle._typing import Array
 from trundle.criteria import BandOutcomes, ClassMap, Criterion, Verdict
 from trundle.errors import FitnessWarning
-from trundle.response import BandSpectra, ExactStatistics, LargestValues, Reduced
+from trundle.response import BandSpectra, ExactStatistics, LargestValues, RunLevels
 from trundle.results.cells import Cell, CellKey, History
 from trundle.results.field_kinds import fields_hold
 from trundle.results.kept import read_kept, write_kept
@@ -35,7 +35,7 @@ _CLASSES: Mapping[str, Callable[..., Any]] = {
     for kind in (
         BandOutcomes, BandSpectra, Cell, CellKey, ChangesPart, ClassMap, Coverage, Criterion,
         ExactPart, ExactStatistics, FirstModes, FitnessWarning, History, KeptIndex, LargestValues,
-        MapKey, MapPart, Reduced, RunsPart, StudyMap, TruncationChange, Verdict,
+        MapKey, MapPart, RunLevels, RunsPart, StudyMap, TruncationChange, Verdict,
     )
 }  # fmt: skip
 _PLAIN = (str, bool, int, float, type(None))

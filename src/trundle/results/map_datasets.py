@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from trundle.criteria import ClassMap, envelope_of
+from trundle.response.quantities import mapped
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.study_result import StudyResult
 from trundle.study.map_plan import MapPlan
@@ -18,10 +19,6 @@ __all__ = ["map_groups", "single_maps"]
 Variable: TypeAlias = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 """Dimensions, data and attributes, as xarray takes them."""
 
-_LEVELS = {
-    "rms_velocity": ("m/s", "record RMS velocity"),
-    "peak_acceleration": ("m/s2", "peak acceleration"),
-}
 _BY_CRITERION = {
     "margin": ("1", "smallest limit over level"),
     "share_exceeding": ("1", "share of runs above it"),
@@ -68,15 +65,16 @@ def _dataset(plan: MapPlan, maps: Sequence[StudyMap], ways: dict[str, Sequence[A
     """Return maps on their grid, along the ways in which they differ."""
     share = f"that {plan.percentile:g} % of {plan.runs} runs stay below"
 
-    def levels(name: str, units: str, long_name: str) -> Variable:
-        return _variable(
-            plan, ways, lambda i: getattr(maps[i], name), units, f"{long_name} {share}"
-        )
-
     classes = [one.classes for one in maps]
     dataset = _of_classes(plan, classes, ways)
-    dataset["rms_velocity"] = levels("rms_velocity", "m/s", "record RMS velocity")
-    dataset["peak_acceleration"] = levels("peak_acceleration", "m/s2", "peak acceleration")
+    for quantity, _ in mapped():
+        dataset[quantity.name] = _variable(
+            plan,
+            ways,
+            lambda i, name=quantity.name: maps[i].numbers[name],
+            quantity.units,
+            f"{quantity.heading} {share}",
+        )
     return dataset
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from jaxtyping import Float
@@ -29,15 +30,13 @@ class StudyMap:
     ----------
     classes : ClassMap
         Margins, exceedance and classes.
-    rms_velocity : ndarray of float, shape (n_places,)
-        RMS velocity over the record that the share of runs stays below [m/s].
-    peak_acceleration : ndarray of float, shape (n_places,)
-        The same of the peak [m/s2]; NaN where no criterion asks for it.
+    numbers : mapping of str to ndarray, shape (n_places,)
+        What the share of runs stays below, by the names of quantities; NaN where no criterion
+        asks for one.
     band_levels : ndarray of float, shape (n_places, n_bands)
         The same of band levels [m/s].
     """
 
     classes: ClassMap
-    rms_velocity: Float[Array, " places"]
-    peak_acceleration: Float[Array, " places"]
+    numbers: Mapping[str, Array]
     band_levels: Float[Array, "places bands"]

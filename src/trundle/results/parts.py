@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
-from trundle.response import ExactStatistics, Reduced, join
+from trundle.response import ExactStatistics, RunLevels, join
 from trundle.results.cells import EXACT_SHARES, Cell, CellKey, History
 from trundle.results.maps import StudyMap
 from trundle.simulate import Coverage, Runs, TruncationChange
@@ -37,7 +37,7 @@ class RunsPart:
 
     Attributes
     ----------
-    reduced : tuple of Reduced
+    reduced : tuple of RunLevels
         What is kept of every run, by road.
     histories : tuple of History
         The first run in time, by road; nothing but in a job's first part.
@@ -47,7 +47,7 @@ class RunsPart:
         What some more modes left out would change; in a job's first part.
     coverage : Coverage
         Which bands the road excites, and whether the vehicles have left.
-    top : float
+    f_resolved : float
         Highest frequency that levels can be trusted to [Hz].
     ends : float
         Time at which the record ends [s].
@@ -55,12 +55,12 @@ class RunsPart:
         Doubts, but for lost contact, which depends on the road.
     """
 
-    reduced: tuple[Reduced, ...]
+    reduced: tuple[RunLevels, ...]
     histories: tuple[History, ...]
     contact_names: tuple[str, ...]
     truncation: TruncationChange | None
     coverage: Coverage
-    top: float
+    f_resolved: float
     ends: float
     warnings: tuple[FitnessWarning, ...]
 
@@ -106,7 +106,7 @@ Part: TypeAlias = RunsPart | ExactPart | MapPart | ChangesPart
 
 def runs_part(
     runs: Runs,
-    reduced: Sequence[Reduced],
+    reduced: Sequence[RunLevels],
     histories: Sequence[Runs],
     *,
     truncation: TruncationChange | None,
@@ -127,7 +127,7 @@ def runs_part(
         contact_names=tuple(runs.contact_names),
         truncation=truncation,
         coverage=runs.coverage,
-        top=runs.top,
+        f_resolved=runs.f_resolved,
         ends=float(runs.time[-1]),
         warnings=tuple(w for w in runs.warnings if w.subject != LOST_CONTACT),
     )
@@ -136,7 +136,8 @@ def runs_part(
 def exact_part(exact: ExactStatistics, factors: Sequence[float]) -> ExactPart:
     """Return exact statistics on the first road, and the peaks on every road."""
     return ExactPart(
-        exact=exact, peaks=tuple(exact.rougher(factor).peaks(EXACT_SHARES) for factor in factors)
+        exact=exact,
+        peaks=tuple(exact.on_scaled_road(factor).peaks(EXACT_SHARES) for factor in factors),
     )
 
 
@@ -150,7 +151,7 @@ def joined(parts: Sequence[RunsPart]) -> RunsPart:
     )
 
 
-_ONCE = ("histories", "contact_names", "truncation", "coverage", "top", "ends", "warnings")
+_ONCE = ("histories", "contact_names", "truncation", "coverage", "f_resolved", "ends", "warnings")
 
 
 def cell_of(key: CellKey, road: int, factor: float, parts: Sequence[Part]) -> Cell:
@@ -174,11 +175,11 @@ def cell_of(key: CellKey, road: int, factor: float, parts: Sequence[Part]) -> Ce
         key=key,
         reduced=runs.reduced[road],
         contact_names=runs.contact_names,
-        exact=None if exact is None else exact.exact.rougher(factor),
+        exact=None if exact is None else exact.exact.on_scaled_road(factor),
         exact_peaks=None if exact is None else exact.peaks[road],
         truncation=runs.truncation,
         history=runs.histories[road],
-        top=runs.top,
+        f_resolved=runs.f_resolved,
         coverage=runs.coverage,
         warnings=(
             *(w for w in doubts if w.subject == LOST_CONTACT),

@@ -63,13 +63,16 @@ class ContactRows:
             n_dofs=self.n_dofs,
         )
 
-    def matrix(self, weights: Float[Array, "rows width"]) -> sparse.csr_array:
-        """Return weights as a sparse matrix of shape (n_rows, n_dofs)."""
+    def matrix(
+        self, weights: Float[Array, "rows width"], dofs: Int[Array, " some"] | None = None
+    ) -> sparse.csr_array:
+        """Return weights as a sparse matrix by all dofs, or by some, rising: (n_rows, n_dofs)."""
         n, width = self.dofs.shape
+        at, columns = (self.dofs, self.n_dofs) if dofs is None else (self.among(dofs), len(dofs))
         starts = np.arange(0, n * width + 1, width)
-        return sparse.csr_array(
-            (weights.ravel(), self.dofs.ravel(), starts), shape=(n, self.n_dofs)
-        )
+        entries = (weights.ravel(), at.ravel(), starts)
+        # a copy: who drops or sorts entries must not change the rows
+        return sparse.csr_array(entries, shape=(n, columns), copy=True)
 
     def scaled(
         self, share: Float[Array, " rows"], share_slope: Float[Array, " rows"]

@@ -19,7 +19,7 @@ from trundle.dynamics import repeatable
 from trundle.errors import ComputationError, InputError
 from trundle.results.parts import Part
 from trundle.run.executor import Shared
-from trundle.run.jobs import LaidOut, lay_out_job
+from trundle.run.jobs import PreparedJob, prepare_job
 from trundle.run.tasks import Task
 from trundle.simulate import PreparedFloor, prepare
 
@@ -133,14 +133,14 @@ def _compute(task: Task, shared: Shared, source: str) -> Part:
             "was finished is kept: install the same one there, and run it again"
         )
     with repeatable():
-        if isinstance(shared, LaidOut):
+        if isinstance(shared, PreparedJob):
             return task.compute(shared)
         interaction = task.job.method.interaction
         key = (shared.content_hash, str(interaction))
         if key not in _kept:
             _kept.clear()
             _kept[key] = prepare(shared, interaction.integration, interaction.damping)
-        return task.compute(lay_out_job(task.job, _kept[key]))
+        return task.compute(prepare_job(task.job, _kept[key]))
 
 
 @contextmanager

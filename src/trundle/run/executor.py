@@ -10,14 +10,14 @@ from trundle._progress import Progress
 from trundle.dynamics import repeatable
 from trundle.results.parts import Part
 from trundle.run.checkpoint import PieceStore
-from trundle.run.jobs import Job, LaidOut
+from trundle.run.jobs import Job, PreparedJob
 from trundle.run.progress import Bar
 from trundle.run.tasks import Task
 from trundle.structure import Floor
 
 __all__ = ["Batch", "Executor", "Shared", "carry_out"]
 
-Shared: TypeAlias = LaidOut | Floor
+Shared: TypeAlias = PreparedJob | Floor
 """What the tasks of a job share: its layout, or the floor that a worker lays it out on itself."""
 
 
@@ -61,7 +61,7 @@ class Batch:
     job: Job
     tasks: Sequence[Task]
     floor: Floor
-    lay_out: Callable[[], LaidOut]
+    lay_out: Callable[[], PreparedJob]
 
 
 def carry_out(batches: Sequence[Batch], executor: Executor, store: PieceStore, bar: Bar) -> None:

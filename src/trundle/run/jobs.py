@@ -25,7 +25,7 @@ from trundle.simulate.ensembles import runs_at_once
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Case, MethodPlan, Study
 
-__all__ = ["Job", "LaidOut", "lay_out_job", "plan_jobs"]
+__all__ = ["Job", "PreparedJob", "plan_jobs", "prepare_job"]
 
 
 _WAVES = 400  # shared among the roads of a case: 800 runs' worth; fewer miss sharp answers
@@ -159,7 +159,7 @@ def _jobs(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class LaidOut:
+class PreparedJob:
     """Hold what all parts of a job share: its layout, and the way to the places of its map."""
 
     layout: Layout
@@ -174,7 +174,7 @@ def _map(study: Study, case: Case, method: MethodPlan) -> MapPlan | None:
     return plan if plan.traffic or len(case.routes) == 1 else None
 
 
-def lay_out_job(job: Job, floor: PreparedFloor) -> LaidOut:
+def prepare_job(job: Job, floor: PreparedFloor) -> PreparedJob:
     """Lay out what all parts of a job share."""
     layout = lay_out(
         floor,
@@ -184,4 +184,4 @@ def lay_out_job(job: Job, floor: PreparedFloor) -> LaidOut:
         duration=job.duration,
     )
     places = None if job.map is None else lay_out_places(floor, layout, job.map.places)
-    return LaidOut(layout=layout, places=places)
+    return PreparedJob(layout=layout, places=places)

@@ -47,10 +47,6 @@ def map_part(
 
 def _of_road(found: FloorMap, plan: MapPlan, layout: Layout) -> StudyMap:
     """Hold the map of one road against the criteria, and keep the levels that it is drawn by."""
-    rms, peak, bands = (
-        np.percentile(levels, plan.percentile, axis=0)
-        for levels in (found.rms_velocity, found.peak_acceleration, found.band_levels)
-    )
     return StudyMap(
         classes=class_map(
             found,
@@ -59,7 +55,9 @@ def _of_road(found: FloorMap, plan: MapPlan, layout: Layout) -> StudyMap:
             f_max=layout.f_max,
             coverage=layout.coverage,
         ),
-        rms_velocity=rms,
-        peak_acceleration=peak,
-        band_levels=bands,
+        numbers={
+            name: np.percentile(levels, plan.percentile, axis=0)
+            for name, levels in found.numbers.items()
+        },
+        band_levels=np.percentile(found.band_levels, plan.percentile, axis=0),
     )

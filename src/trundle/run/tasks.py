@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from trundle._progress import Progress
-from trundle.response import behind_isolators, exact_statistics, reduce_rougher
+from trundle.response import behind_isolators, exact_statistics, reduce_on_scaled_roads
 from trundle.results.parts import Part, exact_part, runs_part
 from trundle.run.costs import Size, exact_seconds, map_seconds, runs_seconds
-from trundle.run.jobs import Job, LaidOut
+from trundle.run.jobs import Job, PreparedJob
 from trundle.run.mapping import map_part
 from trundle.simulate import harmonics, runs_with_mean, truncation_change
 
@@ -38,7 +38,7 @@ class Task(Protocol):
         """Return about how long it takes on two cores, on a floor of some size [s]."""
         ...
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
+    def compute(self, laid_out: PreparedJob, progress: Progress | None = None) -> Part:
         """Compute it: the same bits wherever and whenever."""
         ...
 
@@ -67,7 +67,7 @@ class RunsTask:
         """Return about how long it takes."""
         return runs_seconds(self.job, self.job.parts[self.number], size)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
+    def compute(self, laid_out: PreparedJob, progress: Progress | None = None) -> Part:
         """Run the roads on the first class, and scale the others from them."""
         job, layout = self.job, laid_out.layout
         factors = list(job.factors.values())
@@ -78,11 +78,11 @@ class RunsTask:
         change = truncation_change(layout, runs, job.parts[0]) if first and job.modal else None
         runs = behind_isolators(runs, job.isolations)
         mean = behind_isolators(mean, job.isolations)
-        reduced = reduce_rougher(
+        reduced = reduce_on_scaled_roads(
             runs, mean, factors, averaging=job.averaging, quantities=job.quantities
         )
         one = runs.part(slice(0, 1))
-        histories = [one.rougher(mean, factor) for factor in factors] if first else []
+        histories = [one.on_scaled_road(mean, factor) for factor in factors] if first else []
         return runs_part(runs, reduced, histories, truncation=change)
 
 
@@ -106,7 +106,7 @@ class ExactTask:
         """Return about how long it takes."""
         return exact_seconds(self.job, size)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
+    def compute(self, laid_out: PreparedJob, progress: Progress | None = None) -> Part:
         """Answer every wave, and add up the squares."""
         job, layout = self.job, laid_out.layout
         answers = harmonics(layout, n_waves=job.n_waves, progress=progress)
@@ -131,7 +131,7 @@ class MapTask:
         del size
         return map_seconds(self.job)
 
-    def compute(self, laid_out: LaidOut, progress: Progress | None = None) -> Part:
+    def compute(self, laid_out: PreparedJob, progress: Progress | None = None) -> Part:
         """Carry the contact forces of all runs to every place."""
         job, plan, places = self.job, self.job.map, laid_out.places
         assert plan is not None  # else it is no task of the job

@@ -11,7 +11,7 @@ from trundle._progress import Progress
 from trundle._threads import n_threads
 from trundle.results.parts import Part
 from trundle.run.executor import Shared
-from trundle.run.jobs import LaidOut
+from trundle.run.jobs import PreparedJob
 from trundle.run.tasks import Task
 
 __all__ = ["Threads"]
@@ -56,7 +56,7 @@ class Threads:
 
         A sparse solver answers one caller at a time: a task that is not modal has no other beside.
         """
-        assert isinstance(shared, LaidOut)  # `here` says that layouts are needed
+        assert isinstance(shared, PreparedJob)  # `here` says that layouts are needed
         self._collect(self._at_once if task.job.modal else 0)
         self._running[self._pool.submit(self._run, task, shared, progress)] = task.name
         self._collect(self._at_once if task.job.modal else 0)
@@ -81,7 +81,7 @@ class Threads:
             for future in wait(self._running, return_when=FIRST_COMPLETED).done:
                 self._done.append((self._running.pop(future), future))
 
-    def _run(self, task: Task, laid_out: LaidOut, progress: Progress) -> Part:
+    def _run(self, task: Task, laid_out: PreparedJob, progress: Progress) -> Part:
         """Compute a task, in a thread."""
 
         def tell(share: float) -> None:

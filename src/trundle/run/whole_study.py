@@ -21,7 +21,7 @@ from trundle.run.checkpoint import InMemory, PieceStore
 from trundle.run.estimate import seconds_of_modes, size_of
 from trundle.run.executor import Batch, Executor, carry_out
 from trundle.run.floors import Floors
-from trundle.run.jobs import Job, lay_out_job, plan_jobs
+from trundle.run.jobs import Job, plan_jobs, prepare_job
 from trundle.run.mode_cache import modes_of
 from trundle.run.progress import Bar
 from trundle.run.tasks import tasks_of
@@ -55,7 +55,7 @@ def run_study(
     Returns
     -------
     StudyResult
-        Reduced results; the same study gives the same bits, whoever computes it.
+        RunLevels results; the same study gives the same bits, whoever computes it.
     """
     tell = tell or silent
     store = store if store is not None else InMemory()
@@ -71,7 +71,7 @@ def run_study(
             job=job,
             tasks=tasks_of(job),
             floor=study.floor,
-            lay_out=lambda job=job: lay_out_job(job, floors.of(job)),
+            lay_out=lambda job=job: prepare_job(job, floors.of(job)),
         )
         for job in jobs
     ]
@@ -169,7 +169,7 @@ def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:
         cell.reduced,
         study.assessment.criteria,
         percentile=study.assessment.percentile,
-        top=cell.top,
+        f_resolved=cell.f_resolved,
         coverage=cell.coverage,
         events=study.assessment.events,
     )

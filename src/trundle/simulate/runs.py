@@ -89,7 +89,7 @@ class Runs:
         return float(self.time[1] - self.time[0])
 
     @property
-    def top(self) -> float:
+    def f_resolved(self) -> float:
         """Highest mid-band frequency that modes, step and sampling show as it is [Hz]."""
         return min(self.f_max, band_limit(self.sampling_frequency))
 
@@ -129,7 +129,7 @@ class Runs:
             contact_forces=self.contact_forces[which].copy(),
         )
 
-    def rougher(self, mean: MeanResponse, factor: float) -> Runs:
+    def on_scaled_road(self, mean: MeanResponse, factor: float) -> Runs:
         """Return what the same runs give on roads whose elevations are so many times larger.
 
         Exact, for the system is linear: what a road adds to the response without roughness is

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
 from trundle._typing import Array
 from trundle.criteria import ClassMap, envelope_of
+from trundle.response.quantities import mapped
 from trundle.results.map_datasets import single_maps
 from trundle.results.maps import StudyMap
 from trundle.results.study_result import StudyResult
 from trundle.signals import nominal_frequency
-from trundle.units import GAL, KMH, MICROMETRE_PER_SECOND
+from trundle.units import KMH
+from trundle.views.words import shown
 
 __all__ = ["MapView", "class_names", "class_ranks", "map_payload", "map_views"]
 
@@ -31,7 +34,7 @@ class MapView:
         Margins, exceedance and classes.
     routes : tuple of str
         Names of the routes driven.
-    rms_velocity, peak_acceleration : ndarray of float, shape (n_places,)
+    numbers : mapping of str to ndarray, shape (n_places,)
         Levels that the share of runs stays below [m/s], [m/s2]; peaks NaN if not asked for.
     printed : bool
         Whether it is drawn among the pictures; at other speeds only the worst is.
@@ -40,8 +43,7 @@ class MapView:
     title: str
     classes: ClassMap
     routes: tuple[str, ...]
-    rms_velocity: Float[Array, " places"]
-    peak_acceleration: Float[Array, " places"]
+    numbers: Mapping[str, Array]
     printed: bool
 
 
@@ -67,8 +69,7 @@ def map_views(result: StudyResult) -> list[MapView]:
                 title=f"{key.case}, class {key.road}{at}",
                 classes=one.classes,
                 routes=driven[key.case],
-                rms_velocity=one.rms_velocity,
-                peak_acceleration=one.peak_acceleration,
+                numbers=one.numbers,
                 printed=speed is None,
             )
             for key, one in result.maps.items()
@@ -87,8 +88,9 @@ def _worst(result: StudyResult, maps: list[StudyMap], title: str) -> MapView:
         title=title,
         classes=envelope_of([one.classes for one in maps]),
         routes=tuple(result.study.drives),
-        rms_velocity=np.max([one.rms_velocity for one in maps], axis=0),
-        peak_acceleration=np.max([one.peak_acceleration for one in maps], axis=0),
+        numbers={
+            name: np.max([one.numbers[name] for one in maps], axis=0) for name in maps[0].numbers
+        },
         printed=True,
     )
 
@@ -116,6 +118,7 @@ def map_payload(result: StudyResult) -> dict[str, Any]:
         "y": _short(plan.y),
         "names": class_names(views[0].classes),
         "criterion": plan.criterion,
+        "levels": [[how.word, shown(quantity.units)[0]] for quantity, how in mapped()],
         "views": [_view(result, view, shape) for view in views],
         "routes": [
             {"name": name, "x": _short(d.route.points[:, 0]), "y": _short(d.route.points[:, 1])}
@@ -144,8 +147,7 @@ def _view(result: StudyResult, view: MapView, shape: tuple[int, int]) -> dict[st
                 classes.margin[i],
                 _named(classes.governing_band[i]),
                 100.0 * classes.share_exceeding[i],
-                view.rms_velocity / MICROMETRE_PER_SECOND,
-                view.peak_acceleration / GAL,
+                *(view.numbers[q.name] / shown(q.units)[1] for q, _ in mapped()),
             )
         ],
     }

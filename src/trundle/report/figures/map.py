@@ -15,11 +15,12 @@ from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
 from trundle.report.canvas import COLOURS, Drawing, class_colours, new_figure
+from trundle.response.quantities import Quantity, mapped
 from trundle.results.study_result import StudyResult
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Study
-from trundle.units import GAL, MICROMETRE_PER_SECOND
 from trundle.views.map import MapView, class_names, class_ranks, map_views
+from trundle.views.words import shown
 
 __all__ = ["drawings"]
 
@@ -61,19 +62,14 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         caption=about,
         draw=lambda: share_map_figure(study, views),
     )
-    yield Drawing(
-        name="map_rms",
-        title="RMS velocity over the floor",
-        caption=about,
-        draw=lambda: rms_map_figure(study, views),
-    )
-    if plan.peaks:
-        yield Drawing(
-            name="map_peak",
-            title="Peak acceleration over the floor",
-            caption=about,
-            draw=lambda: peak_map_figure(study, views),
-        )
+    for quantity, how in mapped():
+        if how.of == "velocity" or plan.peaks:
+            yield Drawing(
+                name=how.figure,
+                title=how.title,
+                caption=about,
+                draw=lambda quantity=quantity: level_map_figure(study, views, quantity),
+            )
 
 
 def class_map_figure(study: Study, views: list[MapView]) -> Figure:
@@ -143,20 +139,10 @@ def share_map_figure(study: Study, views: list[MapView]) -> Figure:
     return figure
 
 
-def rms_map_figure(study: Study, views: list[MapView]) -> Figure:
-    """Draw the RMS velocity over the record at every place of every view."""
-    levels = [view.rms_velocity / MICROMETRE_PER_SECOND for view in views]
-    return _level_figure(study, views, levels, "record RMS velocity [um/s]")
-
-
-def peak_map_figure(study: Study, views: list[MapView]) -> Figure:
-    """Draw the peak acceleration at every place of every view."""
-    levels = [view.peak_acceleration / GAL for view in views]
-    return _level_figure(study, views, levels, "peak acceleration [gal]")
-
-
-def _level_figure(study: Study, views: list[MapView], levels: list[Array], label: str) -> Figure:
-    """Draw levels on one logarithmic scale."""
+def level_map_figure(study: Study, views: list[MapView], quantity: Quantity) -> Figure:
+    """Draw a quantity at every place of every view, on one logarithmic scale."""
+    unit, scale = shown(quantity.units)
+    levels = [view.numbers[quantity.name] / scale for view in views]
     plan = study.map
     assert plan is not None  # there are views
     figure, panels = _panels(study, views)
@@ -171,7 +157,7 @@ def _level_figure(study: Study, views: list[MapView], levels: list[Array], label
         image = _image(panel, study, plan, level, view.routes, cmap="cividis_r", norm=norm)
     if image is not None:
         bar = _bar(figure, image, panels)
-        bar.set_label(label)
+        bar.set_label(f"{quantity.heading} [{unit}]")
         ticks = [float(f"{v:.2g}") for v in np.geomspace(low, high, 6)[1:-1]]
         bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
         bar.ax.minorticks_off()

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy import linalg
 
 from trundle._progress import Progress
 from trundle._typing import Array
@@ -43,7 +42,7 @@ def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[
     e, k = law.springs.contact_map, law.springs.stiffness
     ground = RigidGround(len(k))
     still = ground.start(road.n_runs, None)
-    z = linalg.solve(law.springs.standing_stiffness, e.T @ (k * road.start))
+    z = law.springs.standing_on(road.start)
     forces = law.springs.static - k * (e @ z - road.start)
     state = law.vehicle.start(z)
     for at in range(1, timeline.n_run_in + 1):
@@ -54,21 +53,12 @@ def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[
 def static_start(
     law: ContactLaw, floor: ContactFloor, road: RoadUnderWheels
 ) -> tuple[State, State, Array]:
-    """Return vehicle and floor in static equilibrium, and the contact forces.
-
-    With S the floor's static sinking under unit forces, ``K_v z = E^T k (r - S f)`` and
-    ``f = static - k (E z - r + S f)`` are solved together.
-    """
+    """Return vehicle and floor in static equilibrium, and the contact forces."""
     springs = law.springs
-    e, k = springs.contact_map, springs.stiffness
-    sink = floor.static_sinking()
-    matrix = np.block(
-        [[springs.standing_stiffness, e.T @ (k * sink)], [k * e, np.eye(len(k)) + k * sink]]
-    )
-    right = np.vstack([e.T @ (k * road.start), springs.static + k * road.start])
-    solution = linalg.solve(matrix, right)
-    z, forces = np.split(solution, [e.shape[1]])
-    return law.vehicle.start(z), floor.start(forces.shape[1], forces), forces
+    z = springs.standing_on(road.start)
+    rigid = springs.static - springs.stiffness * (springs.contact_map @ z - road.start)
+    forces, _, moved = springs.settled(floor.static_sinking(), rigid)
+    return law.vehicle.start(z + moved), floor.start(forces.shape[1], forces), forces
 
 
 def drive(

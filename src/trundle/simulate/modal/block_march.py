@@ -8,7 +8,6 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 
 import numpy as np
 from jaxtyping import Float
-from scipy import linalg
 
 from trundle._checks import positive
 from trundle._progress import Progress
@@ -115,10 +114,7 @@ class _March:
             forces[:, mine] = forces_on_rigid_ground(
                 _powers(one, self._dt, self._length),
                 self._road.push[begin:, mine],
-                linalg.solve(
-                    springs.standing_stiffness,
-                    springs.contact_map.T @ (springs.stiffness * self._road.start[mine]),
-                ),
+                springs.standing_on(self._road.start[mine]),
                 kept=kept,
                 columns=self._slices,
                 pool=self._pool,
@@ -132,22 +128,13 @@ class _March:
         return out.done()
 
     def settle(self, floor: ModalFloor, *, loaded: bool) -> None:
-        """Put the floor at rest at time 0, under the vehicle's load in static equilibrium or not.
-
-        With S the floor's static sinking under unit forces and ``R = 1 - kE K_v^-1 E^T`` what a
-        push at the held vehicle leaves of itself, ``f = f_rigid - R k S f``.
-        """
+        """Put the floor at rest at time 0, or under the vehicles in static equilibrium."""
         if not loaded:
             self.rest(floor, None)
             return
-        springs = self._springs
-        e, k = springs.contact_map, springs.stiffness
-        sink = k * floor.static_sinking()
-        lift = linalg.solve(springs.standing_stiffness, e.T)
-        left = np.eye(self._n) - k * (e @ lift)
-        forces = linalg.solve(np.eye(self._n) + left @ sink, self.forces[0])
-        self._push = -sink @ forces
-        self._zeta[: len(lift)] = lift @ self._push
+        settled = self._springs.settled(floor.static_sinking(), self.forces[0])
+        forces, self._push, moved = settled
+        self._zeta[: len(moved)] = moved
         self.forces[0] = forces
         self.rest(floor, forces)
 

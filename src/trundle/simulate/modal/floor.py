@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import ModalRecursion, Modes
+from trundle.route import ContactRows
 from trundle.simulate.modal.residual import StaticFlexibility, residual_block
 from trundle.simulate.wheels.standing import StandingWheels
 
@@ -140,14 +140,16 @@ class ModalFloor:
     def _chunk(self, start: int) -> _Under:
         stop = min(start + _CHUNK, self.standing.n_steps)
         rows, speed = self.standing.window(start, stop)
-        weights = np.concatenate([rows.value, rows.slope])
-        at = np.concatenate([rows.among(self._used)] * 2)
-        starts = np.arange(0, at.size + 1, at.shape[1])
-        shape = (len(at), len(self.route_shapes))
-        matrix = sparse.csr_array((weights.ravel(), at.ravel(), starts), shape=shape)
+        shape = (len(speed), self.n_contacts, self.n_modes)
+        value, slope = (
+            self._seen(rows, weights).reshape(shape) for weights in (rows.value, rows.slope)
+        )
+        return _Under(value, slope, rows.load_share.reshape(shape[:2]), speed)
+
+    def _seen(self, rows: ContactRows, weights: Array) -> Array:
+        matrix = rows.matrix(weights, self._used)
         matrix.eliminate_zeros()  # wheels that are not on the floor
-        both = (matrix @ self.route_shapes).reshape(2, -1, self.n_contacts, self.n_modes)
-        return _Under(both[0], both[1], rows.load_share.reshape(-1, self.n_contacts), speed)
+        return matrix @ self.route_shapes
 
 
 class _Residual:
@@ -171,9 +173,7 @@ class _Residual:
         at, value = (
             part.reshape(n_steps, n, width) for part in (rows.among(self._used), rows.value)
         )
-        starts = np.arange(0, at.size + 1, width)
-        shape = (n_steps * n, len(self._block))
-        pressing = sparse.csr_array((value.ravel(), at.ravel(), starts), shape=shape)
+        pressing = rows.matrix(rows.value, self._used)
         deflected = (pressing @ self._block).reshape(n_steps, n, -1)  # by each wheel, everywhere
         under = np.take_along_axis(deflected, at.reshape(n_steps, 1, -1), axis=2)
         out = np.einsum("sia,sjia->sij", value, under.reshape(n_steps, n, n, width))

@@ -169,9 +169,6 @@ class _Influence:
     def _weights(self, start: int, stop: int) -> sparse.csr_array:
         """Return what contacts at some steps press on the route's dofs."""
         rows, _ = self._standing.window(start, stop)
-        weights, at = rows.load_share[:, None] * rows.value, rows.among(self._dofs)
-        starts = np.arange(0, at.size + 1, at.shape[1])
-        shape = (len(at), len(self._dofs))
-        matrix = sparse.csr_array((weights.ravel(), at.ravel(), starts), shape=shape)
+        matrix = rows.matrix(rows.load_share[:, None] * rows.value, self._dofs)
         matrix.sort_indices()
         return matrix

@@ -1,4 +1,18 @@
-"""Raise the free motion of a floor's modes and of a vehicle to the powers that blocks need."""
+"""Raise the free motion of a floor's modes and of a vehicle to the powers that blocks need.
+
+A step is ``x_1 = phi x_0 + s f_0 + e f_1``, for forces that are straight between samples. So a
+force acts twice: at the end of a step, and at the start of the next. Seen from a later step it has
+added ``lag[0] = e`` at its own, and ``lag[l] = phi^(l-1) (phi e + s)`` after l steps; the force
+before a block, whose end is in the state already, has added ``start[k] = phi^k s``. These depend on
+the lag alone, which is why a block's maps are formed from one table of powers.
+
+The state of hundreds of modes is the large thing that is carried on for every run. A *frame* of
+several blocks carries it once: within it, the state that is kept is the one at the frame's start,
+and a force at a later step is traced back to what it would have been there, by powers of
+``phi^-1``. Going back makes numbers larger as modes decay, and so loses digits; a frame is only so
+long that nine (in single precision five) powers of e are lost. Where one block decays by more there
+is no way back, and every block advances the state itself.
+"""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 from jaxtyping import Float
-from scipy import sparse
+from scipy import linalg, sparse
 
 from trundle._typing import Array
 from trundle.dynamics import LinearSystem, block_diagonal
@@ -38,6 +38,45 @@ class Springs:
     damping: Float[Array, "contacts 1"]
     static: Float[Array, "contacts 1"]
     standing_stiffness: Float[Array, "dofs dofs"]
+
+    def standing_on(self, road: Float[Array, "contacts runs"]) -> Float[Array, "dofs runs"]:
+        """Return where vehicles stand at rest, in equilibrium on heights under their wheels [m]."""
+        pushed = self.contact_map.T @ (self.stiffness * road)
+        return linalg.solve(self.standing_stiffness, pushed)
+
+    def settled(
+        self, sinking: Float[Array, "contacts contacts"], rigid: Float[Array, "contacts runs"]
+    ) -> tuple[
+        Float[Array, "contacts runs"], Float[Array, "contacts runs"], Float[Array, "dofs runs"]
+    ]:
+        """Let vehicles and floor settle together.
+
+        Parameters
+        ----------
+        sinking : ndarray of float, shape (n_contacts, n_contacts)
+            The floor's static sinking S under wheel i for a unit force of wheel j [m/N].
+        rigid : ndarray of float, shape (n_contacts, n_runs)
+            Contact forces in equilibrium on rigid ground [N].
+
+        Returns
+        -------
+        forces, push : ndarray of float, shape (n_contacts, n_runs)
+            Contact forces, and what the sunken floor pushes at vehicles that are held [N].
+        moved : ndarray of float, shape (n_dofs, n_runs)
+            How the vehicles move by it [m].
+
+        Notes
+        -----
+        With ``R = 1 - k E K_v^-1 E^T`` what a push at the held vehicle leaves of itself,
+        ``f = f_rigid - R k S f``.
+        """
+        e, k = self.contact_map, self.stiffness
+        sink = k * sinking
+        lift = linalg.solve(self.standing_stiffness, e.T)
+        left = np.eye(len(k)) - k * (e @ lift)
+        forces = linalg.solve(np.eye(len(k)) + left @ sink, rigid)
+        push = -sink @ forces
+        return forces, push, lift @ push
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

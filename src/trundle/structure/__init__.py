@@ -13,6 +13,7 @@ from trundle.structure.elements import (
     ShellGroup,
     SpringGroup,
     Standable,
+    TriangleGroup,
 )
 from trundle.structure.floor import DOF_NAMES, Floor
 from trundle.structure.model import MirrorPlane, Structure
@@ -54,6 +55,7 @@ __all__ = [
     "Standable",
     "Structure",
     "Surface",
+    "TriangleGroup",
     "arching",
     "beam_bridge",
     "build_floor",

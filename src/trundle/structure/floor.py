@@ -76,8 +76,8 @@ class Floor:
         nodes = frozen_array("nodes", self.nodes, shape=(None, 3))
         fixed = frozen_array("fixed", self.fixed, shape=(len(nodes), 6), dtype=np.bool_)
         set_frozen(self, nodes=nodes, fixed=fixed)
-        if not self.shells and not self.beams:
-            raise InputError("a floor needs at least one group of shells or beams")
+        if not (self.shells or self.beams or self.others):
+            raise InputError("a floor needs at least one group of shells, beams or other elements")
         for group in self.elements:
             _check_numbers(group, len(nodes))
         check_names(self.decks)

@@ -8,8 +8,9 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import InputError
 
-__all__ = ["beam_frames", "rotate_blocks", "shell_frames"]
+__all__ = ["beam_frames", "rotate_blocks", "shell_frames", "triangle_frames"]
 
+_NEEDLE = 1e-9  # sine of an angle below which a triangle is a line
 _FLATNESS = 1e-3  # warp over size; a flat element cannot carry more and stay consistent
 
 
@@ -42,6 +43,30 @@ def shell_frames(
             f"shell element {bad} is warped by {100 * warp[bad]:.2g} % of its size; "
             "a flat shell allows 0.1 %: split it or refine the mesh there"
         )
+    return local[:, :, :2], frames
+
+
+def triangle_frames(
+    corners: Float[Array, "elements 3 3"],
+) -> tuple[Float[Array, "elements 3 2"], Float[Array, "elements 3 3"]]:
+    """Return in-plane corner coordinates and frames (rows x, y, z) of triangles.
+
+    Raises
+    ------
+    InputError
+        An element without area.
+    """
+    first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normal = np.cross(first, second)
+    length = np.linalg.norm(normal, axis=1)
+    size = np.linalg.norm(first, axis=1) * np.linalg.norm(second, axis=1)
+    thin = length <= _NEEDLE * size
+    if np.any(thin):
+        raise InputError(f"shell element {int(np.argmax(thin))} has no area")
+    z_axis = normal / length[:, None]
+    x_axis = first / np.linalg.norm(first, axis=1, keepdims=True)
+    frames = np.stack([x_axis, np.cross(z_axis, x_axis), z_axis], axis=1)
+    local = np.einsum("eij,eaj->eai", frames, corners - corners.mean(axis=1, keepdims=True))
     return local[:, :, :2], frames
 
 

@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float
 
 from trundle._checks import non_negative, positive, set_frozen, within
+from trundle._typing import Array
 
 __all__ = ["CONCRETE", "BeamSection", "Material", "ShellSection"]
+
+_SHEAR_CORRECTION = 5.0 / 6.0  # of a solid section, for transverse shear
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,6 +82,37 @@ class ShellSection:
     def mass_per_area(self) -> float:
         """Translational mass of slab and superimposed load [kg/m2]."""
         return self.material.density * self.thickness + self.superimposed_mass
+
+    @property
+    def rotary_inertia(self) -> float:
+        """Rotary inertia ``density t^3 / 12`` [kg]."""
+        return self.material.density * self.thickness**3 / 12.0
+
+    @property
+    def membrane_stiffness(self) -> Float[Array, "3 3"]:
+        """Law of forces by strains (x, y, xy) of the mid-plane [N/m]."""
+        return self.thickness * self._plane_stress
+
+    @property
+    def bending_stiffness(self) -> Float[Array, "3 3"]:
+        """Law of moments by curvatures (x, y, xy) [N m]."""
+        return self.thickness**3 / 12.0 * self._plane_stress
+
+    @property
+    def shear_stiffness(self) -> Float[Array, "2 2"]:
+        """Transverse shear forces by shear strains (x, y) [N/m]."""
+        return _SHEAR_CORRECTION * self.material.shear_modulus * self.thickness * np.eye(2)
+
+    @property
+    def drilling_stiffness(self) -> float:
+        """Size of what ties drilling rotations to the rotation in the plane [N/m]."""
+        return self.material.shear_modulus * self.thickness
+
+    @property
+    def _plane_stress(self) -> Array:
+        nu = self.material.poisson_ratio
+        factor = self.material.elastic_modulus / (1.0 - nu**2)
+        return factor * np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, (1.0 - nu) / 2.0]])
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,6 +10,7 @@ from trundle.structure.elements.protocol import GROUND, Elements, Standable
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.spring import SpringGroup
 from trundle.structure.elements.standing import ContactShape, Hat, Hermite, Located, Weights
+from trundle.structure.elements.triangle_shell import TriangleGroup
 
 __all__ = [
     "GROUND",
@@ -23,5 +24,6 @@ __all__ = [
     "ShellGroup",
     "SpringGroup",
     "Standable",
+    "TriangleGroup",
     "Weights",
 ]

@@ -37,7 +37,6 @@ from trundle.structure.sections import ShellSection
 __all__ = ["ShellGroup", "shell_mass", "shell_stiffness"]
 
 _GAUSS = 1.0 / np.sqrt(3.0)
-_SHEAR_CORRECTION = 5.0 / 6.0
 _UX, _UY, _UZ, _RX, _RY, _RZ = (np.arange(4) * 6 + i for i in range(6))
 
 
@@ -93,7 +92,7 @@ def shell_mass(
         Mass [kg], [kg m2].
     """
     local, frames = shell_frames(corners)
-    rotary = section.material.density * section.thickness**3 / 12.0
+    rotary = section.rotary_inertia
     mass = np.zeros((len(corners), 24, 24))
     for xi, eta in _gauss_points():
         shape, _, det = _shape_functions(local, xi, eta)
@@ -136,12 +135,6 @@ def _shape_functions(local: Array, xi: float, eta: float) -> tuple[Array, Array,
     return shape, gradient, det
 
 
-def _plane_stress(section: ShellSection) -> Array:
-    nu = section.material.poisson_ratio
-    factor = section.material.elastic_modulus / (1.0 - nu**2)
-    return factor * np.array([[1.0, nu, 0.0], [nu, 1.0, 0.0], [0.0, 0.0, (1.0 - nu) / 2.0]])
-
-
 def _strain_rows(gradient: Array) -> Array:
     """Return B (n, 3, 8) of ex, ey, gxy for the columns (u1..u4, v1..v4)."""
     rows = np.zeros((len(gradient), 3, 8))
@@ -161,7 +154,7 @@ def _add_to(stiffness: Array, dofs: Array, block: Array) -> None:
 
 
 def _add_membrane(stiffness: Array, local: Array, section: ShellSection) -> None:
-    law = section.thickness * _plane_stress(section)
+    law = section.membrane_stiffness
     centre, centre_det = _jacobian(local, 0.0, 0.0)
     inverse = np.linalg.inv(centre)
     n = len(local)
@@ -186,7 +179,7 @@ def _add_membrane(stiffness: Array, local: Array, section: ShellSection) -> None
 
 
 def _add_bending(stiffness: Array, local: Array, section: ShellSection) -> None:
-    law = section.thickness**3 / 12.0 * _plane_stress(section)
+    law = section.bending_stiffness
     for xi, eta in _gauss_points():
         _, gradient, det = _shape_functions(local, xi, eta)
         # beta_x = ry and beta_y = -rx turn the membrane's rows into curvatures.
@@ -207,7 +200,7 @@ def _natural_shear(local: Array, xi: float, eta: float, direction: int) -> Array
 
 
 def _add_transverse_shear(stiffness: Array, local: Array, section: ShellSection) -> None:
-    law = _SHEAR_CORRECTION * section.material.shear_modulus * section.thickness * np.eye(2)
+    law = section.shear_stiffness
     below, above = (_natural_shear(local, 0.0, side, 0) for side in (-1.0, 1.0))
     left, right = (_natural_shear(local, side, 0.0, 1) for side in (-1.0, 1.0))
     for xi, eta in _gauss_points():
@@ -231,7 +224,7 @@ def _add_drilling(stiffness: Array, local: Array, section: ShellSection) -> None
     row[:, 0, 0:4] = 0.5 * gradient[:, 1]
     row[:, 0, 4:8] = -0.5 * gradient[:, 0]
     row[:, 0, 8:12] = shape
-    law = section.material.shear_modulus * section.thickness * np.eye(1)
+    law = section.drilling_stiffness * np.eye(1)
     block = _quadratic_form(row, law, row, 4.0 * det)
     _add_to(stiffness, np.concatenate([_UX, _UY, _RZ]), block)
     _add_drilling_hourglass(stiffness, local, section)
@@ -246,7 +239,7 @@ def _add_drilling_hourglass(stiffness: Array, local: Array, section: ShellSectio
     """
     patterns = np.array([XI, ETA, XI * ETA]) / 4.0
     _, det = _jacobian(local, 0.0, 0.0)
-    share = 1e-3 * section.material.shear_modulus * section.thickness
+    share = 1e-3 * section.drilling_stiffness
     block = np.einsum("e,pa,pb->eab", 4.0 * det * share, patterns, patterns)
     _add_to(stiffness, _RZ, block)
 

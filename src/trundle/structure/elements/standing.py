@@ -28,6 +28,8 @@ __all__ = [
     "line_weights",
     "quad_locate",
     "quad_weights",
+    "triangle_locate",
+    "triangle_weights",
 ]
 
 XI = np.array([-1.0, 1.0, 1.0, -1.0])
@@ -233,6 +235,60 @@ def _node_edges(corners: Array, axis: int) -> Array:
     """Return d(x, y)/dxi (axis 0) or d(x, y)/deta (axis 1) at each node, (n, 4, 2)."""
     pairs = [(0, 1), (0, 1), (3, 2), (3, 2)] if axis == 0 else [(0, 3), (1, 2), (1, 2), (0, 3)]
     return np.stack([0.5 * (corners[:, b] - corners[:, a]) for a, b in pairs], axis=1)
+
+
+def triangle_locate(corners: Float[Array, "n 3 2"], places: Float[Array, "n 2"]) -> Located:
+    """Find places in triangles: area coordinates of the second and third corner."""
+    sides = (corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1)
+    local = np.linalg.solve(sides, (places - corners[:, 0])[:, :, None])[:, :, 0]
+    area = np.column_stack([1.0 - local.sum(axis=1), local])
+    inside = np.maximum(area, 0.0)
+    return Located((inside / inside.sum(axis=1, keepdims=True))[:, 1:], -area.min(axis=1))
+
+
+def triangle_weights(
+    local: Float[Array, "n 2"], corners: Float[Array, "n 3 2"], shape: ContactShape
+) -> Weights:
+    """Return weights on (w, rx, ry) of three nodes.
+
+    Smooth: the cubic of Bazeley, Cheung, Irons and Zienkiewicz (1965), whose sides are Hermite's
+    cubics as those of a quadrilateral are; planes and constant curvatures are exact. Across a side
+    the slope is continuous at the nodes only.
+    """
+    area = np.column_stack([1.0 - local.sum(axis=1), local])
+    sides = (corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1)
+    turn = np.linalg.inv(sides)  # rows: gradients of the second and third area coordinate
+    slopes = np.concatenate([-turn.sum(axis=1, keepdims=True), turn], axis=1)  # (n, 3, 2)
+    value, by_area = np.zeros((len(local), 3, 3)), np.zeros((len(local), 3, 3, 3))
+    for i in range(3):
+        value[:, i], by_area[:, i] = _triangle_node(area, corners, i, smooth=not shape.kinks)
+    gradient = np.einsum("nkda,naj->njkd", by_area, slopes)
+    return Weights(value.reshape(len(local), 9), gradient.reshape(len(local), 2, 9))
+
+
+def _triangle_node(area: Array, corners: Array, i: int, *, smooth: bool) -> tuple[Array, Array]:
+    """Return a node's weights (n, 3) on (w, rx, ry), and their derivatives by areas (n, 3, 3)."""
+    j, k = (i + 1) % 3, (i + 2) % 3
+    a, b, c = area[:, i], area[:, j], area[:, k]
+    value, slopes = np.zeros((len(area), 3)), np.zeros((len(area), 3, 3))
+    if not smooth:
+        value[:, 0], slopes[:, 0, i] = a, 1.0
+        return value, slopes
+    value[:, 0] = a + a * a * b + a * a * c - a * b * b - a * c * c
+    slopes[:, 0, i] = 1.0 + 2.0 * a * b + 2.0 * a * c - b * b - c * c
+    slopes[:, 0, j], slopes[:, 0, k] = a * a - 2.0 * a * b, a * a - 2.0 * a * c
+    for other, along in ((j, b), (k, c)):
+        edge = corners[:, other] - corners[:, i]
+        on_slope = a * a * along + 0.5 * a * b * c
+        derivative = np.zeros((len(area), 3))
+        derivative[:, i] = 2.0 * a * along + 0.5 * b * c
+        derivative[:, j], derivative[:, k] = 0.5 * a * c, 0.5 * a * b
+        derivative[:, other] += a * a
+        # dw/dx = -ry and dw/dy = rx
+        for dof, part in ((1, edge[:, 1]), (2, -edge[:, 0])):
+            value[:, dof] += part * on_slope
+            slopes[:, dof] += part[:, None] * derivative
+    return value, slopes
 
 
 def line_weights(

@@ -18,13 +18,35 @@ from trundle.structure.elements import (
 from trundle.structure.floor import DOF_NAMES, Floor
 from trundle.structure.model import MirrorPlane, Structure
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
+from trundle.structure.plates import (
+    OrthotropicSection,
+    composite_deck,
+    hollow_core_slab,
+    ribbed_slab,
+    waffle_slab,
+)
+from trundle.structure.profiles import (
+    STEEL,
+    box_section,
+    i_section,
+    rolled_section,
+    rolled_sections,
+    t_section,
+    tube_section,
+)
 from trundle.structure.reference import reference_plan, reference_unit
 from trundle.structure.resolution import (
     ELEMENTS_PER_WAVE,
     resolved_frequency,
     resolving_mesh_size,
 )
-from trundle.structure.sections import CONCRETE, BeamSection, Material, ShellSection
+from trundle.structure.sections import (
+    CONCRETE,
+    BeamSection,
+    Material,
+    PlateSection,
+    ShellSection,
+)
 from trundle.structure.statics import self_weight_deflection
 from trundle.structure.surface import Frame, Spot, Spots, Surface
 
@@ -33,6 +55,7 @@ __all__ = [
     "DOF_NAMES",
     "EDGES",
     "ELEMENTS_PER_WAVE",
+    "STEEL",
     "BeamGroup",
     "BeamSection",
     "ContactShape",
@@ -45,6 +68,8 @@ __all__ = [
     "Hermite",
     "Material",
     "MirrorPlane",
+    "OrthotropicSection",
+    "PlateSection",
     "PointMasses",
     "Rectangle",
     "ShellGroup",
@@ -58,11 +83,21 @@ __all__ = [
     "TriangleGroup",
     "arching",
     "beam_bridge",
+    "box_section",
     "build_floor",
+    "composite_deck",
+    "hollow_core_slab",
+    "i_section",
     "mesh_lines",
     "reference_plan",
     "reference_unit",
     "resolved_frequency",
     "resolving_mesh_size",
+    "ribbed_slab",
+    "rolled_section",
+    "rolled_sections",
     "self_weight_deflection",
+    "t_section",
+    "tube_section",
+    "waffle_slab",
 ]

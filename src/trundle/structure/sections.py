@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -10,7 +11,7 @@ from jaxtyping import Float
 from trundle._checks import non_negative, positive, set_frozen, within
 from trundle._typing import Array
 
-__all__ = ["CONCRETE", "BeamSection", "Material", "ShellSection"]
+__all__ = ["CONCRETE", "BeamSection", "Material", "PlateLaws", "PlateSection", "ShellSection"]
 
 _SHEAR_CORRECTION = 5.0 / 6.0  # of a solid section, for transverse shear
 
@@ -52,6 +53,57 @@ CONCRETE = Material(elastic_modulus=30e9, poisson_ratio=0.2, density=2450.0)
 """Reinforced concrete of the reference unit (trundle's stand-in for the paper's floor)."""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlateLaws:
+    """Hold the stiffnesses of a plate in the axes of elements, one for all or one each.
+
+    Attributes
+    ----------
+    membrane : ndarray of float, shape (3, 3) or (n_elements, 3, 3)
+        Forces by strains (x, y, xy) of the mid-plane [N/m].
+    bending : ndarray of float, shape (3, 3) or (n_elements, 3, 3)
+        Moments by curvatures (x, y, xy) [N m].
+    shear : ndarray of float, shape (2, 2) or (n_elements, 2, 2)
+        Transverse shear forces by shear strains (x, y) [N/m].
+    drilling : float
+        Size of what ties drilling rotations to the rotation in the plane [N/m].
+    """
+
+    membrane: Float[Array, "*many 3 3"]
+    bending: Float[Array, "*many 3 3"]
+    shear: Float[Array, "*many 2 2"]
+    drilling: float
+
+
+@runtime_checkable
+class PlateSection(Protocol):
+    """What a shell element asks of its section."""
+
+    @property
+    def thickness(self) -> float:
+        """Whole depth [m]."""
+        ...
+
+    @property
+    def mass_per_area(self) -> float:
+        """Mass of plate and what lies on it [kg/m2]."""
+        ...
+
+    @property
+    def rotary_inertia(self) -> float:
+        """Moment of inertia of the mass about the mid-plane [kg]."""
+        ...
+
+    @property
+    def poisson_ratio(self) -> float:
+        """Poisson's ratio of stretching."""
+        ...
+
+    def laws(self, frames: Float[Array, "elements 3 3"]) -> PlateLaws:
+        """Return stiffnesses in the axes of elements, whose frames are rows x, y, z."""
+        ...
+
+
 @dataclass(frozen=True, kw_only=True)
 class ShellSection:
     """Hold a solid slab's thickness and material, and the mass that lies on it.
@@ -89,24 +141,19 @@ class ShellSection:
         return self.material.density * self.thickness**3 / 12.0
 
     @property
-    def membrane_stiffness(self) -> Float[Array, "3 3"]:
-        """Law of forces by strains (x, y, xy) of the mid-plane [N/m]."""
-        return self.thickness * self._plane_stress
+    def poisson_ratio(self) -> float:
+        """Poisson's ratio of stretching."""
+        return self.material.poisson_ratio
 
-    @property
-    def bending_stiffness(self) -> Float[Array, "3 3"]:
-        """Law of moments by curvatures (x, y, xy) [N m]."""
-        return self.thickness**3 / 12.0 * self._plane_stress
-
-    @property
-    def shear_stiffness(self) -> Float[Array, "2 2"]:
-        """Transverse shear forces by shear strains (x, y) [N/m]."""
-        return _SHEAR_CORRECTION * self.material.shear_modulus * self.thickness * np.eye(2)
-
-    @property
-    def drilling_stiffness(self) -> float:
-        """Size of what ties drilling rotations to the rotation in the plane [N/m]."""
-        return self.material.shear_modulus * self.thickness
+    def laws(self, frames: Float[Array, "elements 3 3"]) -> PlateLaws:
+        """Return its stiffnesses, the same in the axes of any element."""
+        del frames
+        return PlateLaws(
+            membrane=self.thickness * self._plane_stress,
+            bending=self.thickness**3 / 12.0 * self._plane_stress,
+            shear=_SHEAR_CORRECTION * self.material.shear_modulus * self.thickness * np.eye(2),
+            drilling=self.material.shear_modulus * self.thickness,
+        )
 
     @property
     def _plane_stress(self) -> Array:

@@ -32,7 +32,7 @@ from trundle.structure.elements.standing import (
     quad_weights,
 )
 from trundle.structure.frames import rotate_blocks, shell_frames
-from trundle.structure.sections import ShellSection
+from trundle.structure.sections import PlateSection
 
 __all__ = ["ShellGroup", "shell_mass", "shell_stiffness"]
 
@@ -41,7 +41,7 @@ _UX, _UY, _UZ, _RX, _RY, _RZ = (np.arange(4) * 6 + i for i in range(6))
 
 
 def shell_stiffness(
-    corners: Float[Array, "elements 4 3"], section: ShellSection
+    corners: Float[Array, "elements 4 3"], section: PlateSection
 ) -> Float[Array, "elements 24 24"]:
     """Form the stiffness matrices in global axes.
 
@@ -49,7 +49,7 @@ def shell_stiffness(
     ----------
     corners : ndarray of float, shape (n_elements, 4, 3)
         Corner coordinates in order round the element [m].
-    section : ShellSection
+    section : PlateSection
         Thickness and material.
 
     Returns
@@ -64,15 +64,16 @@ def shell_stiffness(
     """
     local, frames = shell_frames(corners)
     stiffness = np.zeros((len(corners), 24, 24))
-    _add_membrane(stiffness, local, section)
-    _add_bending(stiffness, local, section)
-    _add_transverse_shear(stiffness, local, section)
-    _add_drilling(stiffness, local, section)
+    laws = section.laws(frames)
+    _add_membrane(stiffness, local, laws.membrane)
+    _add_bending(stiffness, local, laws.bending)
+    _add_transverse_shear(stiffness, local, laws.shear)
+    _add_drilling(stiffness, local, laws.drilling)
     return rotate_blocks(stiffness, frames)
 
 
 def shell_mass(
-    corners: Float[Array, "elements 4 3"], section: ShellSection
+    corners: Float[Array, "elements 4 3"], section: PlateSection
 ) -> Float[Array, "elements 24 24"]:
     """Form the consistent mass matrices in global axes.
 
@@ -83,7 +84,7 @@ def shell_mass(
     ----------
     corners : ndarray of float, shape (n_elements, 4, 3)
         Corner coordinates [m].
-    section : ShellSection
+    section : PlateSection
         Thickness, material, superimposed mass.
 
     Returns
@@ -153,8 +154,7 @@ def _add_to(stiffness: Array, dofs: Array, block: Array) -> None:
     stiffness[np.ix_(np.arange(len(stiffness)), dofs, dofs)] += block
 
 
-def _add_membrane(stiffness: Array, local: Array, section: ShellSection) -> None:
-    law = section.membrane_stiffness
+def _add_membrane(stiffness: Array, local: Array, law: Array) -> None:
     centre, centre_det = _jacobian(local, 0.0, 0.0)
     inverse = np.linalg.inv(centre)
     n = len(local)
@@ -178,8 +178,7 @@ def _add_membrane(stiffness: Array, local: Array, section: ShellSection) -> None
     _add_to(stiffness, np.concatenate([_UX, _UY]), condensed)
 
 
-def _add_bending(stiffness: Array, local: Array, section: ShellSection) -> None:
-    law = section.bending_stiffness
+def _add_bending(stiffness: Array, local: Array, law: Array) -> None:
     for xi, eta in _gauss_points():
         _, gradient, det = _shape_functions(local, xi, eta)
         # beta_x = ry and beta_y = -rx turn the membrane's rows into curvatures.
@@ -199,8 +198,7 @@ def _natural_shear(local: Array, xi: float, eta: float, direction: int) -> Array
     return row
 
 
-def _add_transverse_shear(stiffness: Array, local: Array, section: ShellSection) -> None:
-    law = section.shear_stiffness
+def _add_transverse_shear(stiffness: Array, local: Array, law: Array) -> None:
     below, above = (_natural_shear(local, 0.0, side, 0) for side in (-1.0, 1.0))
     left, right = (_natural_shear(local, side, 0.0, 1) for side in (-1.0, 1.0))
     for xi, eta in _gauss_points():
@@ -217,20 +215,20 @@ def _add_transverse_shear(stiffness: Array, local: Array, section: ShellSection)
         _add_to(stiffness, dofs, _quadratic_form(rows, law, rows, det))
 
 
-def _add_drilling(stiffness: Array, local: Array, section: ShellSection) -> None:
+def _add_drilling(stiffness: Array, local: Array, tie: float) -> None:
     # One point at the centre: more would lock the membrane in in-plane bending.
     shape, gradient, det = _shape_functions(local, 0.0, 0.0)
     row = np.zeros((len(local), 1, 12))
     row[:, 0, 0:4] = 0.5 * gradient[:, 1]
     row[:, 0, 4:8] = -0.5 * gradient[:, 0]
     row[:, 0, 8:12] = shape
-    law = section.drilling_stiffness * np.eye(1)
+    law = tie * np.eye(1)
     block = _quadratic_form(row, law, row, 4.0 * det)
     _add_to(stiffness, np.concatenate([_UX, _UY, _RZ]), block)
-    _add_drilling_hourglass(stiffness, local, section)
+    _add_drilling_hourglass(stiffness, local, tie)
 
 
-def _add_drilling_hourglass(stiffness: Array, local: Array, section: ShellSection) -> None:
+def _add_drilling_hourglass(stiffness: Array, local: Array, tie: float) -> None:
     """Hold the drilling patterns that the one-point penalty cannot see.
 
     Three patterns of the four rotations have no value at the centre; each is restrained by
@@ -239,7 +237,7 @@ def _add_drilling_hourglass(stiffness: Array, local: Array, section: ShellSectio
     """
     patterns = np.array([XI, ETA, XI * ETA]) / 4.0
     _, det = _jacobian(local, 0.0, 0.0)
-    share = 1e-3 * section.drilling_stiffness
+    share = 1e-3 * tie
     block = np.einsum("e,pa,pb->eab", 4.0 * det * share, patterns, patterns)
     _add_to(stiffness, _RZ, block)
 
@@ -252,14 +250,14 @@ class ShellGroup:
     ----------
     elements : ndarray of int, shape (n_elements, 4)
         Node numbers, in order round each element.
-    section : ShellSection
+    section : PlateSection
         Thickness, material and superimposed mass.
     name : str
         What the group is: ``slab`` ...
     """
 
     elements: Int[Array, "elements 4"]
-    section: ShellSection
+    section: PlateSection
     name: str = "slab"
 
     def __post_init__(self) -> None:

@@ -30,7 +30,7 @@ from trundle.structure.elements.standing import (
     triangle_weights,
 )
 from trundle.structure.frames import rotate_blocks, triangle_frames
-from trundle.structure.sections import ShellSection
+from trundle.structure.sections import PlateSection
 
 __all__ = ["TriangleGroup", "triangle_mass", "triangle_stiffness"]
 
@@ -52,7 +52,7 @@ _LEAST_HIGHER = 0.01  # of beta_0, which is (1 - 4 nu^2) / 2
 
 
 def triangle_stiffness(
-    corners: Float[Array, "elements 3 3"], section: ShellSection
+    corners: Float[Array, "elements 3 3"], section: PlateSection
 ) -> Float[Array, "elements 18 18"]:
     """Form the stiffness matrices in global axes.
 
@@ -60,7 +60,7 @@ def triangle_stiffness(
     ----------
     corners : ndarray of float, shape (n_elements, 3, 3)
         Corner coordinates in order round the element [m].
-    section : ShellSection
+    section : PlateSection
         Thickness and material.
 
     Returns
@@ -75,13 +75,14 @@ def triangle_stiffness(
     """
     local, frames = triangle_frames(corners)
     stiffness = np.zeros((len(corners), 18, 18))
-    _add(stiffness, _MEMBRANE, _membrane(local, section))
-    _add(stiffness, _BENDING, _bending(local, section))
+    laws = section.laws(frames)
+    _add(stiffness, _MEMBRANE, _membrane(local, laws.membrane, section.poisson_ratio))
+    _add(stiffness, _BENDING, _bending(local, laws.bending))
     return rotate_blocks(stiffness, frames)
 
 
 def triangle_mass(
-    corners: Float[Array, "elements 3 3"], section: ShellSection
+    corners: Float[Array, "elements 3 3"], section: PlateSection
 ) -> Float[Array, "elements 18 18"]:
     """Form the consistent mass matrices in global axes.
 
@@ -92,7 +93,7 @@ def triangle_mass(
     ----------
     corners : ndarray of float, shape (n_elements, 3, 3)
         Corner coordinates [m].
-    section : ShellSection
+    section : PlateSection
         Thickness, material, superimposed mass.
 
     Returns
@@ -137,7 +138,7 @@ def _differences(local: Array) -> tuple[Array, Array]:
     return x[:, :, None] - x[:, None, :], y[:, :, None] - y[:, None, :]
 
 
-def _membrane(local: Array, section: ShellSection) -> Array:
+def _membrane(local: Array, law: Array, nu: float) -> Array:
     """Return Felippa's template: a basic part for constant stress, a higher one for bending.
 
     The basic part lumps edge tractions of a constant stress to the corners, drilling moments with
@@ -145,10 +146,8 @@ def _membrane(local: Array, section: ShellSection) -> Array:
     cause (rotation less that of the constant strain triangle); its nine numbers are those for which
     a rectangle of triangles bends exactly.
     """
-    law = section.membrane_stiffness
     lumped = _lumping(local)
     basic = lumped @ law @ np.swapaxes(lumped, 1, 2) / _area(local)[:, None, None]
-    nu = section.material.poisson_ratio
     share = 0.75 * max(0.5 * (1.0 - 4.0 * nu**2), _LEAST_HIGHER)
     rotations = _hierarchical(local)
     return basic + share * np.swapaxes(rotations, 1, 2) @ _higher(local, law) @ rotations
@@ -214,8 +213,8 @@ def _turned(times: int) -> Array:
     return _BETA[np.ix_(order, order)]
 
 
-def _bending(local: Array, section: ShellSection) -> Array:
-    law, area = section.bending_stiffness, _area(local)
+def _bending(local: Array, law: Array) -> Array:
+    area = _area(local)
     out = np.zeros((len(local), 9, 9))
     for xi, eta in _GAUSS:
         rows = _curvatures(local, xi, eta)
@@ -288,14 +287,14 @@ class TriangleGroup:
     ----------
     connectivity : ndarray of int, shape (n_elements, 3)
         Node numbers, in order round each element.
-    section : ShellSection
+    section : PlateSection
         Thickness, material and superimposed mass.
     name : str
         What the group is: ``slab`` ...
     """
 
     connectivity: Int[Array, "elements 3"]
-    section: ShellSection
+    section: PlateSection
     name: str = "slab"
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ from scipy.sparse.linalg import spsolve
 
 from trundle.dynamics import natural_modes
 from trundle.errors import InputError
-from trundle.structure import CONCRETE, Floor, ShellGroup, ShellSection, TriangleGroup
+from trundle.structure import CONCRETE, BeamSection, Floor, ShellGroup, ShellSection, TriangleGroup
 from trundle.structure.elements.quad_shell import shell_stiffness
 from trundle.structure.elements.triangle_shell import triangle_stiffness
 from trundle.structure.plates import (
@@ -131,6 +131,15 @@ def test_a_ribbed_slab_without_ribs_is_a_slab():
         [laws.membrane[0, 0], laws.membrane[1, 1], laws.membrane[0, 1], laws.membrane[2, 2]],
         rtol=1e-6,
     )
+
+
+@pytest.mark.parametrize(("build", "directions"), [(ribbed_slab, 1), (waffle_slab, 2)])
+def test_a_strip_of_ribs_twists_as_its_rectangles(build, directions):
+    """w = c x y on a strip of one rib: ``4 Dt s = G (s t^3 / 3 + J)``, Saint-Venant's of both."""
+    section = build(plate=0.08, rib_width=0.12, rib_depth=0.3, spacing=0.7, material=CONCRETE)
+    rib = BeamSection.rectangle(0.12, 0.3, CONCRETE).torsion_constant
+    whole = 0.7 * 0.08**3 / 3.0 + directions * rib
+    assert 4.0 * section.bending[3] * 0.7 == pytest.approx(CONCRETE.shear_modulus * whole, rel=1e-9)
 
 
 def test_a_waffle_slab_is_alike_in_both_directions_and_weighs_what_it_holds():

@@ -96,7 +96,7 @@ class PlateSection(Protocol):
 
     @property
     def poisson_ratio(self) -> float:
-        """Poisson's ratio of stretching."""
+        """Ratio of Poisson, of stretching."""
         ...
 
     def laws(self, frames: Float[Array, "elements 3 3"]) -> PlateLaws:
@@ -142,7 +142,7 @@ class ShellSection:
 
     @property
     def poisson_ratio(self) -> float:
-        """Poisson's ratio of stretching."""
+        """Ratio of Poisson, of stretching."""
         return self.material.poisson_ratio
 
     def laws(self, frames: Float[Array, "elements 3 3"]) -> PlateLaws:

@@ -172,6 +172,35 @@ def build(draft):
     shakers = {s.name: Shaker(name=s.name, at=s.at, amplitude=500.0, frequency=s.frequency) for s in draft.file.items("shaker")}
     return replace(draft, sources={**draft.sources, **shakers}), []
 ''',
+    "imports/formats/toy.py": '''
+"""Plates: a line of length, width, thickness behind the word PLATE."""
+
+import numpy as np
+
+from trundle.errors import Problem
+from trundle.imports.model_format import ModelFormat, ReadModel
+from trundle.structure import CONCRETE, FloorPlan, ShellSection, build_floor
+
+
+def read(path):
+    word, *sizes = path.read_text().split()
+    if len(sizes) != 3:
+        return ReadModel(structure=None, problems=(Problem(
+            place=f"{path.name}, line 1", value=word, rule="a plate has three sizes",
+            remedy="give length, width and thickness"),))
+    length, width, thickness = map(float, sizes)
+    plan = FloorPlan(
+        x_lines=np.array([0.0, length]), y_lines=np.array([0.0, width]), x_extent=(0.0, length),
+        y_extent=(0.0, width), slab=ShellSection(thickness=thickness, material=CONCRETE),
+        material=CONCRETE, edges=dict.fromkeys(("x_min", "x_max", "y_min", "y_max"), "simple"),
+    )
+    return ReadModel(structure=build_floor(plan, mesh_size=1.0))
+
+
+FORMAT = ModelFormat(
+    name="PLATE", suffixes=(".plate",), claims=lambda data: data.startswith(b"PLATE"), read=read
+)
+''',
     "records/formats/toy.py": '''
 """A format of two numbers a line behind the word TOY."""
 
@@ -336,6 +365,38 @@ record = tr.read_record(Path(sys.argv[1]), tr.records.RecordOptions())
 print(json.dumps([record.sampling_frequency, float(record.samples.max())]))
 """
     assert said(house, script, tmp_path / "a.toy") == [500.0, 0.5]
+
+
+def test_a_format_of_models_is_one_file(house, tmp_path):
+    """A study stands on what it reads, and its problems stand with the study's."""
+    start, end = GOOD.index("[floor]"), GOOD.index("[vehicle.truck]")
+    text = GOOD[:start] + '[floor]\nkind = "model"\nfile = "m.plate"\n\n' + GOOD[end:]
+    (tmp_path / "study.toml").write_text(text)
+    (tmp_path / "m.plate").write_text("PLATE 12 6 0.25\n")
+    (tmp_path / "bad").mkdir()
+    (tmp_path / "bad" / "study.toml").write_text(text)
+    (tmp_path / "bad" / "m.plate").write_text("PLATE 12 6\n")
+    script = """
+import json, sys
+import numpy as np
+import trundle as tr
+study = tr.load_study(sys.argv[1])
+first = study.floor.modes(20.0).frequencies[0]
+try:
+    tr.load_study(sys.argv[2])
+except tr.errors.StudyError as error:
+    told = str(error)
+print(json.dumps([first, study.extent, told]))
+"""
+    first, extent, told = said(
+        house, script, tmp_path / "study.toml", tmp_path / "bad" / "study.toml"
+    )
+    rigidity = 30e9 * 0.25**3 / 12.0 / (1.0 - 0.2**2)
+    navier = 0.5 * np.pi * (1 / 144.0 + 1 / 36.0) * np.sqrt(rigidity / (2450.0 * 0.25))
+    assert first == pytest.approx(navier, rel=0.03)  # six elements a half wave
+    assert extent == [[0.0, 12.0], [0.0, 6.0]]
+    assert "m.plate, line 1" in told
+    assert "give length, width and thickness" in told
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 import trundle
 
 PACKAGES = (
-    "criteria", "dynamics", "errors", "mitigate", "records", "report", "response", "results",
+    "criteria", "dynamics", "errors", "imports", "mitigate", "records", "report", "response", "results",
     "road", "route", "run", "signals", "simulate", "structure", "study", "study_file", "units",
     "vehicle",
 )  # fmt: skip

@@ -11,7 +11,6 @@ from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import say_json
 from trundle.cli.sketch import plan_sketch
 from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
-from trundle.dynamics import natural_modes
 from trundle.errors import InputError
 from trundle.run.estimate import estimate_of
 from trundle.study.assumptions import early_end_warnings
@@ -96,13 +95,8 @@ def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
     limit = _frequency(f_max)
     floor = load_study(path).floor
     with progress_bar() as tell:
-        found = natural_modes(
-            floor.mass,
-            floor.stiffness,
-            f_max=limit,
-            progress=lambda share: tell(f"modes below {limit:g} Hz", share),
-        )
-    participation = found.forces(floor.mass @ floor.rigid_vector(2))
+        found = floor.modes(limit, progress=lambda share: tell(f"modes below {limit:g} Hz", share))
+    participation = found.forces(floor.inertia_of(2))
     if as_json:
         columns = (found.frequencies, participation**2, found.residuals)
         names = ("frequency_hz", "vertical_effective_mass_kg", "residual")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from trundle.cli.afford import check_affordable
 from trundle.cli.screen import print_table, progress_bar
 from trundle.run.estimate import estimate_of
@@ -23,7 +25,7 @@ def compare(path: Path, *, yes: bool = False) -> None:
     with progress_bar() as tell:
         found = compare_meshes(study, tell=tell)
     coarse, fine = found.sizes
-    reach = resolved_frequency(study.plan, coarse)
+    reach = np.inf if study.plan is None else resolved_frequency(study.plan, coarse)
     for p, point in enumerate(found.points):
         print_table(
             f"{point}: {found.case}, road {found.road}, {found.method}; rms velocity [um/s]",

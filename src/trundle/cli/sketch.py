@@ -14,7 +14,7 @@ _ASPECT = 0.5  # a character is about twice as tall as wide
 
 def plan_sketch(study: Study) -> str:
     """Return the plan with columns (+), routes (letters) and points (1, 2, ...), y upwards."""
-    (x0, x1), (y0, y1) = study.plan.x_extent, study.plan.y_extent
+    (x0, x1), (y0, y1) = study.extent
     height = int(np.clip(_WIDTH * _ASPECT * (y1 - y0) / (x1 - x0), 8, 48))
     grid = np.full((height, _WIDTH), " ")
 
@@ -23,7 +23,7 @@ def plan_sketch(study: Study) -> str:
         row = np.clip((places[:, 1] - y0) / (y1 - y0) * (height - 1), 0, height - 1)
         grid[np.round(row).astype(int), np.round(column).astype(int)] = mark
 
-    if study.plan.column:
+    if study.plan is not None and study.plan.column:
         lines = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
         _put(np.stack([line.ravel() for line in lines], axis=1), "+")
     legend = []

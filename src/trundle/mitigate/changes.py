@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 
 from trundle.dynamics import ModalRatio
+from trundle.errors import InputError
 from trundle.signals import Isolation
 from trundle.structure import build_floor
 from trundle.study.model import MethodPlan, Study
@@ -84,6 +85,8 @@ def every_combination(levers: Sequence[Sequence[Change]]) -> tuple[Change, ...]:
 def changed_study(study: Study, change: Change) -> Study:
     """Return the study with a change; a slab of another thickness is meshed anew."""
     if change.slab_thickness is not None:
+        if study.plan is None:
+            raise InputError(f"{study.floor.name} came as a mesh: its slab cannot be changed")
         slab = replace(study.plan.slab, thickness=change.slab_thickness)
         plan = replace(study.plan, slab=slab)
         study = replace(study, plan=plan, floor=build_floor(plan, mesh_size=study.mesh_size))

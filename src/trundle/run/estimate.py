@@ -41,6 +41,7 @@ START = 8.0
 _BARE = 0.35e9  # bytes: the process and its libraries
 _EXACT = 0.4e9  # of answers to waves
 _BATCH = 0.4e9  # of the histories of a batch, at most
+_USUAL_MODES = 600.0  # below 100 Hz, of a model whose slab is not known
 _AT_ONCE = 2  # batches in work
 _FACTOR = 8.0 * 60.0  # bytes of a factor for each degree of freedom and doubling of them
 _MAP = 2.2e9  # of spectra and responses of a map, at most
@@ -126,11 +127,13 @@ def memory_there_is() -> float:
     return max(there, 0.0)
 
 
-def n_modes_of(plan: FloorPlan, job: Job) -> float:
+def n_modes_of(plan: FloorPlan | None, job: Job) -> float:
     """Return about how many modes a job's method keeps."""
     integration = job.method.interaction.integration
     if integration.f_max is None:
         return 0.0
+    if plan is None:
+        return _USUAL_MODES * integration.f_max / 100.0
     slab, material = plan.slab, plan.slab.material
     area = float(np.ptp(plan.x_extent) * np.ptp(plan.y_extent))
     stiffness = material.elastic_modulus * slab.thickness**3 / 12.0

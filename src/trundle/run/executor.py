@@ -13,11 +13,11 @@ from trundle.run.checkpoint import PieceStore
 from trundle.run.jobs import Job, PreparedJob
 from trundle.run.progress import Bar
 from trundle.run.tasks import Task
-from trundle.structure import Floor
+from trundle.structure import Structure
 
 __all__ = ["Batch", "Executor", "Shared", "carry_out"]
 
-Shared: TypeAlias = PreparedJob | Floor
+Shared: TypeAlias = PreparedJob | Structure
 """What the tasks of a job share: its layout, or the floor that a worker lays it out on itself."""
 
 
@@ -51,7 +51,7 @@ class Batch:
         Whose tasks they are.
     tasks : sequence of Task
         The tasks.
-    floor : Floor
+    floor : Structure
         The floor, before it is prepared.
     lay_out : callable
         Lays out what they share, when their turn has come.
@@ -60,7 +60,7 @@ class Batch:
     label: str
     job: Job
     tasks: Sequence[Task]
-    floor: Floor
+    floor: Structure
     lay_out: Callable[[], PreparedJob]
 
 

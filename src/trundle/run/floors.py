@@ -8,7 +8,7 @@ from trundle.dynamics import Modes
 from trundle.run.jobs import Job
 from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
 from trundle.simulate.wheels.standing import route_dofs
-from trundle.structure import Floor
+from trundle.structure import Structure
 from trundle.study.model import MethodPlan
 
 __all__ = ["Floors"]
@@ -17,7 +17,7 @@ __all__ = ["Floors"]
 class Floors:
     """Prepare the floor for each method once, and hold one of them at a time."""
 
-    def __init__(self, floor: Floor, modes: Modes | None, jobs: Sequence[Job]) -> None:
+    def __init__(self, floor: Structure, modes: Modes | None, jobs: Sequence[Job]) -> None:
         self._floor, self._modes = floor, modes
         self._flexibility = StaticFlexibility(floor)
         # All routes, whatever is missing: a resumed run must solve for the same things together.

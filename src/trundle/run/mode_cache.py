@@ -19,7 +19,7 @@ from trundle.dynamics import (
     modes_from_arrays,
 )
 from trundle.results.kept import stored_as_they_are
-from trundle.structure import Floor
+from trundle.structure import Structure
 
 __all__ = ["cache_folder", "has_modes", "modes_of"]
 
@@ -40,12 +40,12 @@ def cache_folder() -> Path | None:
     return base / "trundle" / "modes"
 
 
-def modes_of(floor: Floor, *, f_max: float, progress: Progress | None = None) -> Modes:
+def modes_of(floor: Structure, *, f_max: float, progress: Progress | None = None) -> Modes:
     """Return the modes of a floor below a frequency, from the cache if it has them.
 
     Parameters
     ----------
-    floor : Floor
+    floor : Structure
         The floor.
     f_max : float
         Upper frequency [Hz].
@@ -62,13 +62,13 @@ def modes_of(floor: Floor, *, f_max: float, progress: Progress | None = None) ->
     return modes
 
 
-def has_modes(floor: Floor, f_max: float) -> bool:
+def has_modes(floor: Structure, f_max: float) -> bool:
     """Return whether modes are kept; whether they can be believed is seen when they are read."""
     file = _file(floor, f_max)
     return file is not None and file.is_file()
 
 
-def _file(floor: Floor, f_max: float) -> Path | None:
+def _file(floor: Structure, f_max: float) -> Path | None:
     """Return where modes are kept, None where keeping is switched off.
 
     Modes found up to another frequency, or by another solver, differ in their last digits: what
@@ -79,7 +79,7 @@ def _file(floor: Floor, f_max: float) -> Path | None:
     return None if folder is None else folder / name
 
 
-def _read(file: Path, floor: Floor) -> Modes | None:
+def _read(file: Path, floor: Structure) -> Modes | None:
     """Return what a file holds; None if there is none, or it cannot be what it should."""
     try:
         with file.open("rb") as opened, _arrays_of(opened) as data:

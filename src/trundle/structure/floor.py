@@ -172,10 +172,13 @@ class Floor:
         vector[rows[rows >= 0]] = 1.0
         return vector
 
+    def inertia_of(self, dof: int) -> Float[Array, " dofs"]:
+        """Return the forces of inertia of a unit acceleration of all free dofs of a kind [kg]."""
+        return self.mass @ self.rigid_vector(dof)
+
     def moving_mass(self, dof: int = 2) -> float:
         """Return the mass that moves with a unit motion of all free dofs of a kind [kg]."""
-        ones = self.rigid_vector(dof)
-        return float(ones @ (self.mass @ ones))
+        return float(self.rigid_vector(dof) @ self.inertia_of(dof))
 
     @cached_property
     def _carried(self) -> Bool[Array, "nodes 6"]:

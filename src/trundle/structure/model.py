@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
-from jaxtyping import Int
+from jaxtyping import Float, Int
 
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes
+from trundle.structure.elements import Elements
 from trundle.structure.surface import Surface
 
 __all__ = ["MirrorPlane", "Structure"]
@@ -46,6 +47,24 @@ class Structure(Protocol):
     @property
     def n_dofs(self) -> int:
         """Number of free degrees of freedom."""
+        ...
+
+    @property
+    def nodes(self) -> Float[Array, "nodes 3"]:
+        """Place of every node [m], z up."""
+        ...
+
+    @property
+    def elements(self) -> tuple[Elements, ...]:
+        """All groups of elements, for pictures; none where only modes are known."""
+        ...
+
+    def inertia_of(self, dof: int) -> Float[Array, " dofs"]:
+        """Return the forces of inertia of a unit acceleration of the whole in a dof [kg]."""
+        ...
+
+    def moving_mass(self, dof: int = 2) -> float:
+        """Return the mass that moves with a unit motion of the whole in a dof [kg]."""
         ...
 
     @property

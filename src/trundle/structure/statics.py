@@ -7,18 +7,18 @@ from jaxtyping import Float
 
 from trundle._checks import positive
 from trundle._typing import Array
-from trundle.dynamics import factorise
-from trundle.structure.floor import Floor
+from trundle.errors import InputError
+from trundle.structure.model import Structure
 
 __all__ = ["self_weight_deflection"]
 
 
-def self_weight_deflection(floor: Floor, *, gravity: float = 9.81) -> Float[Array, " nodes"]:
+def self_weight_deflection(floor: Structure, *, gravity: float = 9.81) -> Float[Array, " nodes"]:
     """Return the vertical deflection of every node under all masses of the floor.
 
     Parameters
     ----------
-    floor : Floor
+    floor : Structure
         The floor; superimposed mass counts as weight.
     gravity : float
         Acceleration of gravity [m/s2].
@@ -30,10 +30,14 @@ def self_weight_deflection(floor: Floor, *, gravity: float = 9.81) -> Float[Arra
 
     Raises
     ------
+    InputError
+        A structure that is known by its modes alone.
     UnrestrainedModeError
         Part of the floor can move without strain.
     """
-    weight = positive("gravity", gravity) * (floor.mass @ floor.rigid_vector(2))
-    u = factorise(floor.stiffness).solve(-weight)
+    flexibility = floor.flexibility()
+    if flexibility is None:
+        raise InputError(f"{floor.name} is known by its modes: nothing says how it sinks")
+    u = flexibility.solve(-positive("gravity", gravity) * floor.inertia_of(2))
     rows = floor.dof_index[:, 2]
     return np.where(rows >= 0, u[np.maximum(rows, 0)], 0.0)

@@ -33,7 +33,7 @@ def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
                 "two tracks with the coherence of an isotropic road",
             )
         )
-    if "symmetry" in study.plan.edges.values():
+    if study.floor.mirrors:
         found.append(
             FitnessWarning(
                 subject="planes of symmetry",
@@ -48,6 +48,8 @@ def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
 def _points_on_beams(study: Study) -> list[FitnessWarning]:
     """Return the doubt about points on main beams, the stillest places of a floor."""
     plan, found = study.plan, list[FitnessWarning]()
+    if plan is None:
+        return found
     for name, (x, y) in study.points.items():
         along_x = plan.beams_x is not None and np.abs(plan.y_lines - y).min() < _ON_BEAM
         along_y = plan.beams_y is not None and np.abs(plan.x_lines - x).min() < _ON_BEAM

@@ -38,11 +38,15 @@ def study_doubts(study: Study) -> tuple[FitnessWarning, ...]:
         Each with its numbers and its remedy; empty for a study that nothing is odd about.
     """
     return (
-        *_thrust(study.plan),
-        *_columns_in_a_slab(study.plan),
-        *_mesh(study),
+        *(() if study.plan is None else _of_plan(study, study.plan)),
         *value_doubts(study),
     )
+
+
+def _of_plan(study: Study, plan: FloorPlan) -> Iterator[FitnessWarning]:
+    yield from _thrust(plan)
+    yield from _columns_in_a_slab(plan)
+    yield from _mesh(study, plan)
 
 
 def _thrust(plan: FloorPlan) -> Iterator[FitnessWarning]:
@@ -89,16 +93,16 @@ def _columns_in_a_slab(plan: FloorPlan) -> Iterator[FitnessWarning]:
     )
 
 
-def _mesh(study: Study) -> Iterator[FitnessWarning]:
+def _mesh(study: Study, plan: FloorPlan) -> Iterator[FitnessWarning]:
     """Doubt a mesh that is too coarse for the highest band that is assessed."""
     bands = _bands_assessed(study)
-    reach = resolved_frequency(study.plan, study.mesh_size)
+    reach = resolved_frequency(plan, study.mesh_size)
     if not len(bands) or bands[-1] <= reach:
         return
     top = nominal_frequency(float(bands[-1]))
     fine = bands[bands <= reach]
     lost = f"bands above {nominal_frequency(float(fine[-1])):g} Hz" if len(fine) else "all bands"
-    enough = np.floor(100.0 * resolving_mesh_size(study.plan, float(bands[-1]))) / 100.0
+    enough = np.floor(100.0 * resolving_mesh_size(plan, float(bands[-1]))) / 100.0
     yield FitnessWarning(
         subject="mesh",
         message=f"elements of {study.mesh_size:g} m carry the slab's bending waves to {reach:.3g} "

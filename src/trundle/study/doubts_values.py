@@ -37,7 +37,8 @@ def value_doubts(study: Study) -> tuple[FitnessWarning, ...]:
 
 
 def _typed(study: Study) -> Typed:
-    yield from _plan(study.plan)
+    if study.plan is not None:
+        yield from _plan(study.plan)
     for name, vehicle in {d.vehicle.name: d.vehicle for d in study.drives.values()}.items():
         yield from _vehicle(f"vehicle.{name}", vehicle)
     for name, drive in study.drives.items():
@@ -158,6 +159,8 @@ def _rough_roads(study: Study) -> Iterator[FitnessWarning]:
 def _still_points(study: Study) -> Iterator[FitnessWarning]:
     """Doubt points on an edge that cannot move."""
     plan = study.plan
+    if plan is None:
+        return
     for name, at in study.points.items():
         for edge, (axis, position) in plan.held_edges().items():
             if abs(at[axis] - position) < _ON_EDGE:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from trundle.simulate import Crossing, Interaction
 from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import as_sources
 from trundle.simulate.sources.source import Source
-from trundle.structure import Floor, FloorPlan
+from trundle.structure import FloorPlan, Structure
 from trundle.study.map_plan import MapPlan
 from trundle.vehicle import Vehicle
 
@@ -24,12 +25,26 @@ __all__ = [
     "Assessment",
     "Case",
     "Drive",
+    "Extent",
     "MethodPlan",
     "Note",
     "Printed",
     "PrintedBound",
     "Study",
+    "extent_of",
 ]
+
+
+Extent: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
+"""Range along x and along y [m]."""
+
+
+def extent_of(floor: Structure) -> Extent:
+    """Return the range of a structure's surfaces along x and along y [m]."""
+    both = [surface.extent for surface in floor.surfaces.values()]
+    low = np.min([one for one, _ in both], axis=0)
+    high = np.max([one for _, one in both], axis=0)
+    return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -159,10 +174,10 @@ class Study:
     duration : float or None
         Length of every record [s]; None lets each last until its vehicles have left and the floor
         has come to rest.
-    floor : Floor
+    floor : Structure
         The meshed floor.
-    plan : FloorPlan
-        The plan that it was meshed from.
+    plan : FloorPlan or None
+        The plan that it was meshed from; None for a model that came as it is.
     mesh_size : float
         Largest edge of an element [m].
     drives : mapping of str to Drive
@@ -205,8 +220,8 @@ class Study:
     seed: int
     runs: int
     duration: float | None
-    floor: Floor
-    plan: FloorPlan
+    floor: Structure
+    plan: FloorPlan | None
     mesh_size: float
     drives: Mapping[str, Drive]
     sources: Mapping[str, Source]
@@ -249,6 +264,13 @@ class Study:
                 ("floor", f"{self.floor.name}, {self.floor.n_dofs} degrees of freedom"),
             ),
         )
+
+    @property
+    def extent(self) -> Extent:
+        """Range of the floor along x and along y [m]."""
+        if self.plan is not None:
+            return self.plan.x_extent, self.plan.y_extent
+        return extent_of(self.floor)
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:

@@ -11,9 +11,9 @@ from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.signals import Isolation
 from trundle.simulate import Source
-from trundle.structure import FloorPlan
+from trundle.structure import FloorPlan, Structure
 from trundle.study.map_plan import MapPlan
-from trundle.study.model import Assessment, Drive, MethodPlan
+from trundle.study.model import Assessment, Drive, Extent, MethodPlan, extent_of
 from trundle.study_file.document import StudyFile
 from trundle.vehicle import Vehicle
 
@@ -36,6 +36,8 @@ class Draft:
         Where they are, if not there.
     plan : FloorPlan or None
         Plan of the floor.
+    model : Structure or None
+        The floor itself, where it came from a file.
     mesh_size : float
         Largest edge of an element [m].
     vehicles : mapping of str to Vehicle
@@ -64,6 +66,7 @@ class Draft:
     folder: Path
     files: Mapping[str, Path]
     plan: FloorPlan | None = None
+    model: Structure | None = None
     mesh_size: float = 1.0
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict[str, Vehicle])
     drives: Mapping[str, Drive] = field(default_factory=dict[str, Drive])
@@ -75,6 +78,13 @@ class Draft:
     read: Mapping[str, bytes] = field(default_factory=dict[str, bytes])
     isolations: Mapping[str, Isolation] = field(default_factory=dict[str, Isolation])
     map: MapPlan | None = None
+
+    @property
+    def extent(self) -> Extent | None:
+        """Range of the floor along x and y [m]; None where there is none."""
+        if self.plan is not None:
+            return self.plan.x_extent, self.plan.y_extent
+        return None if self.model is None else extent_of(self.model)
 
 
 def unknown(place: str, value: str, known: Iterable[str], what: str) -> Problem:
@@ -135,14 +145,14 @@ def unique(place: str, names: Iterable[str]) -> Iterator[Problem]:
             )
 
 
-def is_off(plan: FloorPlan, place: tuple[float, float]) -> bool:
+def is_off(extent: Extent, place: tuple[float, float]) -> bool:
     """Return whether a place is off the floor [m]."""
-    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    (x0, x1), (y0, y1) = extent
     x, y = place
     return not (x0 - _EDGE <= x <= x1 + _EDGE and y0 - _EDGE <= y <= y1 + _EDGE)
 
 
-def covered(plan: FloorPlan) -> str:
+def covered(extent: Extent) -> str:
     """Say where the floor is."""
-    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+    (x0, x1), (y0, y1) = extent
     return f"the floor covers x {x0:g} to {x1:g} m and y {y0:g} to {y1:g} m"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -17,8 +17,8 @@ from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
-from trundle.route import Route
-from trundle.structure import Floor, FloorPlan
+from trundle.structure import FloorPlan, Structure
+from trundle.study.model import Study
 
 __all__ = ["drawings"]
 
@@ -32,21 +32,21 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         One after the other, as they stand on the page.
     """
     study, modes = result.study, result.modes
+    plan = study.plan
     yield Drawing(
         name="plan",
         title="Plan with routes and points",
         caption="Beams (grey), secondary beams (dashed), columns (squares), routes with their "
         "direction and speed, and the points where the response is read.",
-        draw=lambda: plan_figure(
-            study.plan, {n: d.route for n, d in study.drives.items()}, study.points
-        ),
+        draw=lambda: plan_figure(study),
     )
-    yield Drawing(
-        name="section",
-        title="Section",
-        caption="Section along y: slab, beams, columns above and below.",
-        draw=lambda: section_figure(study.plan),
-    )
+    if plan is not None:
+        yield Drawing(
+            name="section",
+            title="Section",
+            caption="Section along y: slab, beams, columns above and below.",
+            draw=lambda: section_figure(plan),
+        )
     yield Drawing(
         name="mesh",
         title="Finite-element model",
@@ -62,14 +62,15 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         )
 
 
-def plan_figure(
-    plan: FloorPlan, routes: Mapping[str, Route], points: Mapping[str, tuple[float, float]]
-) -> Figure:
-    """Draw the plan with beams, columns, routes and points."""
-    (x0, x1), (y0, y1) = plan.x_extent, plan.y_extent
+def plan_figure(study: Study) -> Figure:
+    """Draw the plan with beams, columns, routes and points; of a model as it came, its mesh."""
+    (x0, x1), (y0, y1) = study.extent
     figure, (axes,) = new_figure(5.6, 1.2 + 5.0 * (y1 - y0) / (x1 - x0))
-    _draw_beams(axes, plan)
-    for i, (name, route) in enumerate(routes.items()):
+    if study.plan is None:
+        _draw_outline(axes, study.floor)
+    else:
+        _draw_beams(axes, study.plan)
+    for i, (name, route) in enumerate((n, d.route) for n, d in study.drives.items()):
         colour = COLOURS[i % 6]
         axes.plot(*route.points.T, color=colour, linewidth=2.0)
         axes.annotate(
@@ -93,14 +94,26 @@ def plan_figure(
             color=colour,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
         )
-    for name, place in points.items():
+    for name, place in study.points.items():
         axes.plot(*place, marker="X", markersize=9, color="black", linestyle="none")
         axes.annotate(name, place, xytext=(8, 6), textcoords="offset points", weight="bold")
-    _draw_edges(axes, plan)
+    if study.plan is not None:
+        _draw_edges(axes, study.plan)
     axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
     axes.set(xlim=(x0 - 3.0, x1 + 3.0), ylim=(y0 - 3.0, y1 + 3.0))
     axes.grid(visible=False)
     return figure
+
+
+def _draw_outline(axes: Axes, floor: Structure) -> None:
+    """Draw the outer edges of every surface: those that one element alone has."""
+    for surface in floor.surfaces.values():
+        flat = surface.frame.coordinates(surface.nodes)
+        for _, elements in surface.parts:
+            ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
+            found, times = np.unique(np.sort(ends, axis=1), axis=0, return_counts=True)
+            for a, b in flat[found[times == 1]]:
+                axes.plot([a[0], b[0]], [a[1], b[1]], color="black", linewidth=1.0)
 
 
 def _draw_beams(axes: Axes, plan: FloorPlan) -> None:
@@ -174,19 +187,23 @@ def _edges(elements: Array) -> Array:
     return np.unique(np.sort(around, axis=1), axis=0)
 
 
-def mesh_figure(floor: Floor) -> Figure:
+def mesh_figure(floor: Structure) -> Figure:
     """Draw the finite-element mesh in perspective."""
     figure = Figure(figsize=(7.2, 5.4), layout="constrained")
     axes = figure.add_subplot(projection="3d")
-    for group in floor.shells:
-        lines = floor.nodes[_edges(group.elements)]
+    for group in floor.elements:
+        numbers = group.connectivity
+        if numbers.shape[1] > 2:
+            lines, look = floor.nodes[_edges(numbers)], ("#8FB8D6", 0.25)
+        elif numbers.shape[1] == 2 and not group.stands_on_ground:
+            offset = getattr(group, "offset", np.zeros(3))
+            lines = floor.nodes[numbers] + offset
+            look = (COLOURS[1] if group.name == "column" else "#333333", 0.9)
+        else:
+            continue
         axes.add_collection(
-            Line3DCollection(lines, colors="#8FB8D6", linewidths=0.25, rasterized=True)
+            Line3DCollection(lines, colors=look[0], linewidths=look[1], rasterized=True)
         )
-    for group in floor.beams:
-        lines = floor.nodes[group.elements] + group.offset
-        colour = COLOURS[1] if group.name == "column" else "#333333"
-        axes.add_collection(Line3DCollection(lines, colors=colour, linewidths=0.9, rasterized=True))
     low, high = floor.nodes.min(axis=0), floor.nodes.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2] + 1e-3))
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
@@ -202,7 +219,18 @@ def mesh_figure(floor: Floor) -> Figure:
     return figure
 
 
-def modes_figure(floor: Floor, modes: FirstModes, *, n_shown: int = 8) -> Figure:
+def _triangles(floor: Structure) -> np.ndarray:
+    """Return the faces of all surfaces as triangles, by node numbers."""
+    faces = [
+        elements[:, [0, i, i + 1]]
+        for surface in floor.surfaces.values()
+        for _, elements in surface.parts
+        for i in range(1, elements.shape[1] - 1)
+    ]
+    return np.vstack(faces)
+
+
+def modes_figure(floor: Structure, modes: FirstModes, *, n_shown: int = 8) -> Figure:
     """Draw the vertical motion of the slab in the first modes."""
     n_shown = min(n_shown, modes.n_modes)
     columns = min(4, n_shown)
@@ -213,12 +241,7 @@ def modes_figure(floor: Floor, modes: FirstModes, *, n_shown: int = 8) -> Figure
         columns=columns,
         share="xy",
     )
-    elements = floor.shells[0].elements
-    mesh = Triangulation(
-        floor.nodes[:, 0],
-        floor.nodes[:, 1],
-        np.vstack([elements[:, [0, 1, 2]], elements[:, [0, 2, 3]]]),
-    )
+    mesh = Triangulation(floor.nodes[:, 0], floor.nodes[:, 1], _triangles(floor))
     for i, panel in enumerate(axes):
         if i >= n_shown:
             panel.set_visible(False)

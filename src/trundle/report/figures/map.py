@@ -165,7 +165,7 @@ def level_map_figure(study: Study, views: list[MapView], quantity: Quantity) -> 
 
 
 def _panels(study: Study, views: list[MapView]) -> tuple[Figure, list[Axes]]:
-    (x0, x1), (y0, y1) = study.plan.x_extent, study.plan.y_extent
+    (x0, x1), (y0, y1) = study.extent
     columns = min(_COLUMNS, len(views))
     rows = -(-len(views) // columns)
     width = 8.4 / columns
@@ -203,7 +203,7 @@ def _image(
         rasterized=True,
         **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
     )
-    panel.set(xlim=study.plan.x_extent, ylim=study.plan.y_extent, aspect="equal")
+    panel.set(xlim=study.extent[0], ylim=study.extent[1], aspect="equal")
     panel.set_facecolor("#D9D9D9")  # where nothing is assessed
     for name in routes:
         line = study.drives[name].route.points.T
@@ -211,7 +211,7 @@ def _image(
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
     for place in study.points.values():
         panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")
-    if study.plan.column:
+    if study.plan is not None and study.plan.column:
         x, y = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
         panel.plot(x.ravel(), y.ravel(), "s", markersize=2, color=COLOURS[7])
     return image

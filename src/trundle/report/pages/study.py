@@ -15,7 +15,7 @@ from trundle.report.html import Picture, embedded, template
 from trundle.report.interactive import plotly_script
 from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, class_limits
-from trundle.structure import self_weight_deflection
+from trundle.structure import Structure, self_weight_deflection
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 from trundle.views.map import map_payload
 from trundle.views.printed import bound_rows, comparison_rows
@@ -96,11 +96,19 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],
         n_modes=0 if modes is None else modes.n_modes,
         moving_mass=study.floor.moving_mass() / 1e3,
-        sag=-1e3 * float(self_weight_deflection(study.floor).min()),
+        sag=_sag(study.floor),
         class_limits=_class_table(),
         gal=GAL,
         micrometre=MICROMETRE_PER_SECOND,
     )
+
+
+def _sag(floor: Structure) -> float | None:
+    """Return the largest deflection under its own weight [mm]; None if nothing says it."""
+    try:
+        return -1e3 * float(self_weight_deflection(floor).min())
+    except InputError:  # it is known by its modes
+        return None
 
 
 def _class_table() -> list[tuple[str, list[str]]]:

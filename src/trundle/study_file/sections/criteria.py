@@ -75,7 +75,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         averaging=section.averaging,
         events=section.events,
     )
-    return replace(draft, assessment=assessment, read=read), found
+    return replace(draft, assessment=assessment, read={**draft.read, **read}), found
 
 
 def fields(draft: Draft) -> dict[str, Any]:

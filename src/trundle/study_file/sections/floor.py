@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from trundle.errors import Problem
+from trundle.imports import read_model
 from trundle.structure import (
     FloorPlan,
     Material,
@@ -25,6 +26,7 @@ from trundle.study_file.fields import (
     Density,
     Flag,
     Length,
+    Line,
     NonNegativeLength,
     Number,
     PositiveLength,
@@ -94,8 +96,15 @@ class PlanFloorSection(Section):
     edges: EdgesSection = EdgesSection()
 
 
+class ModelFloorSection(Section):
+    """A model that another program wrote."""
+
+    kind: Literal["model"]
+    file: Line
+
+
 FloorSection: TypeAlias = Annotated[
-    ReferenceFloorSection | PlanFloorSection, Field(discriminator="kind")
+    ReferenceFloorSection | PlanFloorSection | ModelFloorSection, Field(discriminator="kind")
 ]
 
 
@@ -107,6 +116,8 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     section = draft.file.tables.get("floor")
     if section is None:
         return draft, []
+    if isinstance(section, ModelFloorSection):
+        return _with_model(draft, section)
     plan, found = attempted(
         "floor",
         reference_plan
@@ -118,9 +129,27 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     return replace(draft, plan=plan, mesh_size=float(section.mesh_size)), found
 
 
+def _with_model(draft: Draft, section: ModelFloorSection) -> tuple[Draft, list[Problem]]:
+    """Return the draft with a model that is read from its file."""
+    path = draft.files.get(section.file, draft.folder / section.file)
+    read, found = attempted(
+        "floor.file", lambda: read_model(path), "docs/models.md says what is read"
+    )
+    model = None if read is None else read.structure
+    found += () if read is None else read.problems
+    if model is None:
+        return draft, found
+    size, mistakes = attempted("floor.file", lambda: model.surface().element_size)
+    found += mistakes
+    draft = replace(draft, read={**draft.read, section.file: path.read_bytes()})
+    return replace(draft, model=model, mesh_size=size or 1.0), found
+
+
 def fields(draft: Draft) -> dict[str, Any]:
-    """Return what a study takes from the section; the floor is meshed."""
+    """Return what a study takes from the section; a plan is meshed."""
     plan = draft.plan
+    if draft.model is not None:
+        return {"floor": draft.model, "plan": None, "mesh_size": draft.mesh_size}
     assert plan is not None  # a study is made of sound sections alone
     floor = build_floor(plan, mesh_size=draft.mesh_size)
     return {"floor": floor, "plan": plan, "mesh_size": draft.mesh_size}

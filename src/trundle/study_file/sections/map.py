@@ -18,7 +18,7 @@ from trundle.structure import (
     mesh_lines,
 )
 from trundle.study.map_plan import MapPlan, map_places
-from trundle.study.model import Assessment, Drive, MethodPlan
+from trundle.study.model import Assessment, Drive, Extent, MethodPlan
 from trundle.study_file.draft import Draft
 from trundle.study_file.fields import (
     Flag,
@@ -68,10 +68,11 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
             remedy="add [criteria] with method and curves",
         )
         return draft, [problem]
-    if draft.plan is None or draft.assessment is None or draft.band is None:
+    if draft.extent is None or draft.assessment is None or draft.band is None:
         return draft, []
     checked = _Checked(
         section=section,
+        extent=draft.extent,
         plan=draft.plan,
         mesh_size=draft.mesh_size,
         assessment=draft.assessment,
@@ -96,7 +97,8 @@ class _Checked:
     """What a map is planned from, all of it sound by itself."""
 
     section: MapSection
-    plan: FloorPlan
+    extent: Extent
+    plan: FloorPlan | None
     mesh_size: float
     assessment: Assessment
     drives: Mapping[str, Drive]
@@ -114,13 +116,10 @@ class _Checked:
 
     def lines(self) -> tuple[Array, Array]:
         """Return the lines of the grid of places along x and along y [m]."""
-        plan, spacing = self.plan, self.section.spacing
-        if self.section.places == "nodes":
-            return mesh_lines(plan, mesh_size=self.mesh_size)
-        return (
-            map_places(plan.x_extent, spacing, plan.y_extent),
-            map_places(plan.y_extent, spacing, plan.x_extent),
-        )
+        (x, y), spacing = self.extent, self.section.spacing
+        if self.section.places == "nodes" and self.plan is not None:
+            return mesh_lines(self.plan, mesh_size=self.mesh_size)
+        return map_places(x, spacing, y), map_places(y, spacing, x)
 
 
 def _problems(given: _Checked) -> Iterator[Problem]:
@@ -149,6 +148,13 @@ def _problems(given: _Checked) -> Iterator[Problem]:
             value=f"{given.section.spacing:g} m",
             rule="the nodes of the mesh have a spacing of their own",
             remedy='remove it, or set places = "grid"',
+        )
+    if given.section.places == "nodes" and given.plan is None:
+        yield Problem(
+            place="map.places",
+            value="nodes",
+            rule="nodes of a model that came as a mesh stand in no grid",
+            remedy='set places = "grid", with a spacing',
         )
     yield from _sizes(given)
     yield from _speeds(given)
@@ -192,9 +198,9 @@ def _criterion(given: _Checked) -> Iterator[Problem]:
 
 
 def _sizes(given: _Checked) -> Iterator[Problem]:
-    plan, section = given.plan, given.section
+    section = given.section
     spacing = given.mesh_size if section.places == "nodes" else section.spacing or 1e9
-    places = float(np.prod([np.ceil((b - a) / spacing) for a, b in (plan.x_extent, plan.y_extent)]))
+    places = float(np.prod([np.ceil((b - a) / spacing) for a, b in given.extent]))
     if places > _MOST_PLACES:
         yield Problem(
             place="map.places" if section.places == "nodes" else "map.spacing",

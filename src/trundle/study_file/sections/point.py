@@ -70,13 +70,13 @@ def fields(draft: Draft) -> dict[str, Any]:
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give points off the floor, and points of one name."""
-    plan = draft.plan
+    extent = draft.extent
     for i, section in draft.file.lists.get("point", []):
-        if plan is not None and is_off(plan, section.at):
+        if extent is not None and is_off(extent, section.at):
             yield Problem(
                 place=f"point[{i + 1}].at",
                 value=f"({section.at[0]:g}, {section.at[1]:g}) m",
-                rule=f"a point must lie on the floor; {covered(plan)}",
+                rule=f"a point must lie on the floor; {covered(extent)}",
                 remedy="move it onto the floor",
             )
     yield from unique("point", [s.name for s in draft.file.items("point")])

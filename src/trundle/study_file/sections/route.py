@@ -14,7 +14,7 @@ from trundle.route import ConstantSpeed, Route
 from trundle.structure import (
     FloorPlan,
 )
-from trundle.study.model import Case, Drive, MethodPlan
+from trundle.study.model import Case, Drive, Extent, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import Draft, covered, is_off, refer, unique, unknown
@@ -89,8 +89,9 @@ def fields(draft: Draft) -> dict[str, Any]:
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give routes off the floor, along an edge or too short, and traffic of unknown routes."""
     yield from _traffic(draft)
+    if draft.extent is not None:
+        yield from _off_the_floor(draft, draft.extent)
     if draft.plan is not None:
-        yield from _off_the_floor(draft, draft.plan)
         yield from _on_held_edges(draft.file, draft.plan)
     yield from _short_routes(draft.drives, draft.methods)
     named = [s.name for kind in ("route", "traffic") for s in draft.file.items(kind)]
@@ -113,14 +114,14 @@ def _traffic(draft: Draft) -> Iterator[Problem]:
             )
 
 
-def _off_the_floor(draft: Draft, plan: FloorPlan) -> Iterator[Problem]:
+def _off_the_floor(draft: Draft, extent: Extent) -> Iterator[Problem]:
     for i, section in draft.file.lists.get("route", []):
         for j, place in enumerate(section.path):
-            if is_off(plan, place):
+            if is_off(extent, place):
                 yield Problem(
                     place=f"route[{i + 1}].path[{j + 1}]",
                     value=f"({place[0]:g}, {place[1]:g}) m",
-                    rule=f"a route must stay on the floor; {covered(plan)}",
+                    rule=f"a route must stay on the floor; {covered(extent)}",
                     remedy="start and end it at the floor's edges; 'trundle check' draws the plan",
                 )
 

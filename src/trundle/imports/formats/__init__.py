@@ -1,0 +1,1 @@
+"""Formats of structural models, a file each; `model_format` finds them here."""

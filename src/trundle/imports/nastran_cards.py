@@ -1,0 +1,164 @@
+"""Read the cards of Nastran bulk data: fields of 8, of 16, or between commas, over many lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from trundle.errors import InputError
+
+__all__ = ["Card", "cards_of", "case_control", "real", "whole"]
+
+_REAL = re.compile(r"^([+-]?(?:\d+\.?\d*|\.\d+))(?:[ED]?([+-]?\d+))?$", re.IGNORECASE)
+_DEEPEST = 8  # files that include each other
+
+
+@dataclass(frozen=True, kw_only=True)
+class Card:
+    """Hold a card: its name, its fields behind the name, and where it stands.
+
+    Attributes
+    ----------
+    name : str
+        In capitals, without the star of large fields.
+    fields : tuple of str
+        Field 2 of the card is the first; blank ones are empty.
+    place : str
+        File and line.
+    """
+
+    name: str
+    fields: tuple[str, ...]
+    place: str
+
+    def get(self, number: int) -> str:
+        """Return a field by its number in manuals, 2 for the first; empty if it is not there."""
+        return self.fields[number - 2] if 0 <= number - 2 < len(self.fields) else ""
+
+
+def real(text: str, default: float | None = None) -> float:
+    """Return a real number as Nastran writes it: 2.9+7 is 2.9e7, 1.D-3 is 1e-3.
+
+    Raises
+    ------
+    InputError
+        No such number, or none where there is no default.
+    """
+    if not text and default is not None:
+        return default
+    found = _REAL.match(text)
+    if not found or (found[2] is None and text[-1:].upper() in {"E", "D"}):
+        raise InputError(f"must be a number; got {text!r}")
+    return float(f"{found[1]}e{found[2] or 0}")
+
+
+def whole(text: str, default: int | None = None) -> int:
+    """Return a whole number.
+
+    Raises
+    ------
+    InputError
+        No such number, or none where there is no default.
+    """
+    if not text and default is not None:
+        return default
+    if not re.fullmatch(r"[+-]?\d+", text):
+        raise InputError(f"must be a whole number; got {text!r}")
+    return int(text)
+
+
+def case_control(path: Path) -> dict[str, int]:
+    """Return the numbers of sets that case control asks for, such as ``SPC = 3``."""
+    found: dict[str, int] = {}
+    for line in _text(path).splitlines():
+        if re.match(r"\s*BEGIN\s+BULK", line, re.IGNORECASE):
+            return found
+        if asked := re.match(r"\s*(SPC|MPC|METHOD)\s*=\s*(\d+)\s*$", line, re.IGNORECASE):
+            found[asked[1].upper()] = int(asked[2])
+    return found
+
+
+def cards_of(path: Path) -> Iterator[Card]:
+    """Give the cards of bulk data, those of included files where they are included.
+
+    Yields
+    ------
+    Card
+        One after the other, continuation lines joined.
+
+    Raises
+    ------
+    InputError
+        A file that cannot be read, or files that include each other.
+    """
+    open_card: list[tuple[list[str], str]] = []
+    for place, line in _lines(path, path.parent.resolve(), 0):
+        fields, continues = _fields(line)
+        if continues:
+            if not open_card:
+                raise InputError(f"{place}: a line that continues no card: {line.strip()[:40]!r}")
+            open_card[-1][0].extend(fields)
+            continue
+        if open_card:
+            yield _card(*open_card.pop())
+        open_card.append((fields, place))
+    if open_card:
+        yield _card(*open_card.pop())
+
+
+def _card(fields: list[str], place: str) -> Card:
+    name = fields[0].upper().rstrip("*")
+    return Card(name=name, fields=tuple(fields[1:]), place=place)
+
+
+def _text(path: Path) -> str:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+
+
+def _lines(path: Path, folder: Path, depth: int) -> Iterator[tuple[str, str]]:
+    """Give lines of bulk data with their place, without comments."""
+    if depth > _DEEPEST:
+        raise InputError(f"{path}: files include each other, or {_DEEPEST} deep")
+    lines = _text(path).splitlines()
+    starts = [i for i, line in enumerate(lines) if re.match(r"\s*BEGIN\s+BULK", line, re.I)]
+    for number, line in enumerate(lines[starts[0] + 1 if starts else 0 :], (starts or [-1])[0] + 2):
+        plain = line.partition("$")[0].rstrip()
+        if not plain.strip():
+            continue
+        if re.match(r"\s*ENDDATA", plain, re.IGNORECASE):
+            return
+        if named := re.match(r"\s*INCLUDE\s+['\"]?([^'\"]+)['\"]?\s*$", plain, re.IGNORECASE):
+            inner = (path.parent / named[1].strip()).resolve()
+            if not inner.is_relative_to(folder):
+                raise InputError(
+                    f"{path.name}, line {number}: {named[1]!r} is not beside the model"
+                )
+            yield from _lines(inner, folder, depth + 1)
+            continue
+        yield f"{path.name}, line {number}", plain
+
+
+def _fields(line: str) -> tuple[list[str], bool]:
+    """Return the fields of a line, and whether it continues the card before it.
+
+    A line of the first form has 10 fields, of which the last only names the next line; a line that
+    continues another gives none for its first.
+    """
+    text = line.expandtabs(8)
+    if "," in text:
+        fields = [field.strip() for field in text.split(",")][:10]
+        continues = not fields[0] or fields[0][0] in "+*"
+        values = (fields[1:9] if continues else fields[:9]) if len(fields) > 1 else fields
+        width = 8 if continues else 9
+        return values + [""] * (width - len(values)), continues
+    first = text[:8].strip()
+    large = first.endswith("*") or first.startswith("*")
+    size = 16 if large else 8
+    values = [text[8 + i * size : 8 + (i + 1) * size].strip() for i in range(4 if large else 8)]
+    continues = not first or first[0] in "+*"
+    return (values if continues else [first, *values]), continues

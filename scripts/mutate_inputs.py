@@ -1,9 +1,9 @@
-"""Spoil records and studies in seeded ways, and see that each is refused by name or read.
+"""Spoil records, models and studies in seeded ways, and see that each is refused by name or read.
 
 Usage: python scripts/mutate_inputs.py [--records N] [--studies N] [--run-every N] [--seed N]
 
-300 records of each format and 700 studies unless told otherwise. Every tenth study that the check
-accepts is run too. Nothing may end in a traceback or a warning of Python's, execute anything, take
+300 records and models of each format and 700 studies unless told otherwise. Every tenth study that
+the check accepts is run too. Nothing may end in a traceback or a warning of Python's, execute anything, take
 more than 60 s or 4 GB. Exit code 0 if all is well, 1 if not.
 """
 
@@ -30,10 +30,12 @@ import numpy as np
 from scipy.io import wavfile
 
 from trundle.criteria import VC
-from trundle.errors import TrundleError
+from trundle.errors import StudyError, TrundleError
+from trundle.imports import read_model
 from trundle.records import RecordOptions, read_record
 from trundle.records.assess import assess_record
 from trundle.run.whole_study import run_study
+from trundle.structure import self_weight_deflection
 from trundle.study_file.build import load_study
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -204,6 +206,27 @@ def records(folder: Path, n: int, seed: int) -> Iterator[tuple[str, str]]:
             trace.unlink(missing_ok=True)
 
 
+def models(folder: Path, n: int, seed: int) -> Iterator[tuple[str, str]]:
+    """Give format and outcome of every spoiled model; one with problems is refused."""
+
+    def use() -> None:
+        """Read a model, and let it sink under its weight."""
+        found = read_model(path)
+        if found.problems:
+            raise StudyError(path.name, list(found.problems))
+        self_weight_deflection(found.structure)
+
+    path, trace = folder / "model.bdf", folder / "trace"
+    data = (ROOT / "scripts" / "small_model.bdf").read_bytes()
+    path.write_bytes(data)
+    assert attempt(use) == "right"
+    for number in range(n):
+        path.write_bytes(spoiled_record(data, random.Random(f"{seed} bdf {number}"), trace))
+        ended = attempt(use)
+        yield f"bdf {number}", "executed" if trace.exists() else ended
+        trace.unlink(missing_ok=True)
+
+
 def studies(folder: Path, n: int, seed: int, run_every: int) -> Iterator[tuple[str, str]]:
     """Give number and outcome of every spoiled study."""
     text = (ROOT / "scripts" / "small_study.toml").read_text("utf-8")
@@ -236,6 +259,7 @@ def main() -> int:
         folder = Path(name)
         both = (
             records(folder, asked.records, asked.seed),
+            models(folder, asked.records, asked.seed),
             studies(folder, asked.studies, asked.seed, asked.run_every),
         )
         for what, ended in (one for part in both for one in part):

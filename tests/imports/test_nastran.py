@@ -175,6 +175,11 @@ def test_a_grid_in_a_turned_system(tmp_path):
         ("GRID,3,,1.,X,0.", "must be a number"),
         ("GRID,3,,1.,0.,0.,5", "displacements in a system of their own"),
         ("SPC,1,1,1,.5", "enforced"),
+        ("GRID,2,,5.,0.,0.", "grid 2 is there twice"),
+        ("CBAR,1,1,2,1,0.,0.,1.", "element 1 is there twice"),
+        ("CORD2R,8,0,0.,0.,0.,0.,0.,1.,+\n+,0.,0.,2.", "three points lie on one line"),
+        ("PBAR,2,1,0.,1.,1.,1.", "field 4"),
+        ("GRID,3,,1.+400,0.,0.", "too large a number"),
     ],
 )
 def test_what_is_not_understood_is_told_with_its_line(tmp_path, card, said):
@@ -231,6 +236,16 @@ def test_supports_that_case_control_asks_for(tmp_path):
         assert read_model(path).structure.n_dofs == free
     path.write_text(text + sets)
     assert "case control asks for none" in str(read_model(path).problems[0])
+
+
+def test_a_range_holds_the_grids_that_are_there(tmp_path):
+    """THRU to a billion: grids 1 and 2 are held, and nothing is listed."""
+    text = CANTILEVER.replace("UP", "0.,0.,1.").replace(",,123456", "")
+    path = tmp_path / "bar.bdf"
+    path.write_text(text + "SPC1,1,123,1,THRU,999999999\n")
+    assert read_model(path).structure.n_dofs == 6
+    path.write_text(text + "SPC1,1,123,5\n")
+    assert "names grid 5, which is not there" in str(read_model(path).problems[0])
 
 
 def test_files_of_no_known_format_are_refused(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -51,7 +52,10 @@ def real(text: str, default: float | None = None) -> float:
     found = _REAL.match(text)
     if not found or (found[2] is None and text[-1:].upper() in {"E", "D"}):
         raise InputError(f"must be a number; got {text!r}")
-    return float(f"{found[1]}e{found[2] or 0}")
+    value = float(f"{found[1]}e{found[2] or 0}")
+    if not math.isfinite(value):
+        raise InputError(f"is too large a number; got {text!r}")
+    return value
 
 
 def whole(text: str, default: int | None = None) -> int:
@@ -64,7 +68,7 @@ def whole(text: str, default: int | None = None) -> int:
     """
     if not text and default is not None:
         return default
-    if not re.fullmatch(r"[+-]?\d+", text):
+    if not re.fullmatch(r"[+-]?\d{1,9}", text):
         raise InputError(f"must be a whole number; got {text!r}")
     return int(text)
 

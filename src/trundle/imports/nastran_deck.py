@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from trundle._checks import non_negative, positive
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.imports.nastran_cards import Card, real, whole
@@ -43,32 +44,48 @@ class Deck:
     faces: list[tuple[int, tuple[int, ...], str]] = field(default_factory=list)
     members: list[tuple[Bar, str]] = field(default_factory=list)
     masses: list[tuple[int, float]] = field(default_factory=list)
-    supports: dict[int, list[tuple[int, str]]] = field(default_factory=lambda: defaultdict(list))
+    supports: dict[int, list[tuple[range, str]]] = field(default_factory=lambda: defaultdict(list))
     added: dict[int, list[int]] = field(default_factory=dict)
     weight_to_mass: float = 1.0
+    taken: set[tuple[str, int]] = field(default_factory=set)
+
+    def claim(self, kind: str, number: int) -> int:
+        """Return a number that nothing else of its kind has; refuse one that is taken."""
+        if (kind, number) in self.taken:
+            raise InputError(f"{kind} {number} is there twice")
+        self.taken.add((kind, number))
+        return number
 
 
 def _grid(deck: Deck, card: Card) -> None:
     if whole(card.get(7), 0):
         raise InputError("displacements in a system of their own (CD) are not read")
     place = np.array([real(card.get(i), 0.0) for i in (4, 5, 6)])
-    deck.grids[whole(card.get(2))] = (whole(card.get(3), 0), place, card.get(8))
+    deck.grids[deck.claim("grid", whole(card.get(2)))] = (whole(card.get(3), 0), place, card.get(8))
 
 
 def _cord2r(deck: Deck, card: Card) -> None:
     points = np.array([real(card.get(i), 0.0) for i in range(4, 13)]).reshape(3, 3)
-    deck.systems[whole(card.get(2))] = (whole(card.get(3), 0), points)
+    along, aside = points[1] - points[0], points[2] - points[0]
+    across = float(np.linalg.norm(np.cross(along, aside)))
+    if not across > 1e-9 * float(np.linalg.norm(along) * np.linalg.norm(aside)):
+        raise InputError("its three points lie on one line")
+    deck.systems[deck.claim("coordinate system", whole(card.get(2)))] = (
+        whole(card.get(3), 0),
+        points,
+    )
 
 
 def _mat1(deck: Deck, card: Card) -> None:
     modulus, shear = card.get(3), card.get(4)
     if not modulus:
         raise InputError("a material needs its modulus E")
-    e = real(modulus)
-    nu = real(card.get(5)) if card.get(5) else e / (2.0 * real(shear, 0.5 * e)) - 1.0
-    if shear and card.get(5) and abs(real(shear) * 2.0 * (1.0 + nu) / e - 1.0) > 0.01:
+    e = positive("E", real(modulus))
+    g = positive("G", real(shear, 0.5 * e))
+    nu = real(card.get(5)) if card.get(5) else e / (2.0 * g) - 1.0
+    if shear and card.get(5) and abs(2.0 * g * (1.0 + nu) / e - 1.0) > 0.01:
         raise InputError("E, G and NU contradict each other; only isotropic materials are read")
-    deck.materials[whole(card.get(2))] = Material(
+    deck.materials[deck.claim("material", whole(card.get(2)))] = Material(
         elastic_modulus=e, poisson_ratio=nu, density=real(card.get(6), 0.0)
     )
 
@@ -77,21 +94,27 @@ def _pshell(deck: Deck, card: Card) -> None:
     material, bending = whole(card.get(3)), whole(card.get(5), 0)
     if bending != material or abs(real(card.get(6), 1.0) - 1.0) > 1e-9:
         raise InputError("only solid plates are read: MID2 as MID1, and 12 I / T^3 of 1")
-    deck.shells[whole(card.get(2))] = (material, real(card.get(4)), real(card.get(9), 0.0))
+    deck.shells[deck.claim("property", whole(card.get(2)))] = (
+        material,
+        real(card.get(4)),
+        real(card.get(9), 0.0),
+    )
 
 
 def _pbar(deck: Deck, card: Card) -> None:
     if real(card.get(20), 0.0):
         raise InputError("I12 is not 0: principal axes that lie aslant are not read")
-    numbers = [real(card.get(i), 0.0) for i in (4, 5, 6, 7, 8, 18, 19)]
-    deck.bars[whole(card.get(2))] = (whole(card.get(3)), tuple(numbers))
+    sizes = [positive(f"field {i}", real(card.get(i), 0.0)) for i in (4, 5, 6, 7)]
+    numbers = sizes + [non_negative(f"field {i}", real(card.get(i), 0.0)) for i in (8, 18, 19)]
+    deck.bars[deck.claim("property", whole(card.get(2)))] = (whole(card.get(3)), tuple(numbers))
 
 
 def _face(deck: Deck, card: Card, corners: int) -> None:
     if real(card.get(5 + corners), 0.0) or any(card.get(i) for i in range(6 + corners, 20)):
         raise InputError("an offset, an angle of material or thicknesses at corners are not read")
     numbers = tuple(whole(card.get(4 + i)) for i in range(corners))
-    deck.faces.append((whole(card.get(3), whole(card.get(2))), numbers, card.place))
+    number = deck.claim("element", whole(card.get(2)))
+    deck.faces.append((whole(card.get(3), number), numbers, card.place))
 
 
 def _triple(card: Card, at: int) -> tuple[float, float, float]:
@@ -111,7 +134,7 @@ def _cbar(deck: Deck, card: Card) -> None:
     towards = not card.get(7) and not card.get(8) and card.get(6).isdigit()
     bar = Bar(
         ends=ends,
-        property=whole(card.get(3), whole(card.get(2))),
+        property=whole(card.get(3), deck.claim("element", whole(card.get(2)))),
         up=None if towards else _triple(card, 6),
         towards=whole(card.get(6)) if towards else 0,
         offset=first,
@@ -122,7 +145,8 @@ def _cbar(deck: Deck, card: Card) -> None:
 def _conm2(deck: Deck, card: Card) -> None:
     if any(real(card.get(i), 0.0) for i in (6, 7, 8, 10, 11, 12, 13, 14, 15)):
         raise InputError("masses beside their grid, and moments of inertia, are not read")
-    deck.masses.append((whole(card.get(3)), real(card.get(5))))
+    deck.claim("element", whole(card.get(2)))
+    deck.masses.append((whole(card.get(3)), non_negative("M", real(card.get(5)))))
 
 
 def _spc(deck: Deck, card: Card) -> None:
@@ -130,17 +154,18 @@ def _spc(deck: Deck, card: Card) -> None:
         if card.get(at):
             if real(card.get(at + 2), 0.0):
                 raise InputError("a displacement that is enforced is not read")
-            deck.supports[whole(card.get(2))].append((whole(card.get(at)), card.get(at + 1)))
+            number = whole(card.get(at))
+            held = (range(number, number + 1), card.get(at + 1))
+            deck.supports[whole(card.get(2))].append(held)
 
 
 def _spc1(deck: Deck, card: Card) -> None:
     named = [value for value in card.fields[2:] if value]
     if len(named) == 3 and named[1].upper() == "THRU":
-        numbers = range(whole(named[0]), whole(named[2]) + 1)
+        ranges = [range(whole(named[0]), whole(named[2]) + 1)]
     else:
-        numbers = [whole(value) for value in named]
-    held = deck.supports[whole(card.get(2))]
-    held.extend((number, card.get(3)) for number in numbers)
+        ranges = [range(n, n + 1) for n in (whole(value) for value in named)]
+    deck.supports[whole(card.get(2))].extend((numbers, card.get(3)) for numbers in ranges)
 
 
 def _spcadd(deck: Deck, card: Card) -> None:

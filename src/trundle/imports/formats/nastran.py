@@ -65,7 +65,11 @@ def read(path: Path) -> ReadModel:
     if problems:
         return ReadModel(structure=None, problems=tuple(problems))
     try:
-        return ReadModel(structure=_Builder(deck, asked, path.stem).floor())
+        floor = _Builder(deck, asked, path.stem).floor()
+        if not floor.n_dofs:
+            raise InputError("nothing of it can move: no grid is free")
+        floor.matrices()  # elements without area or warped are told here
+        return ReadModel(structure=floor)
     except InputError as error:
         problem = Problem(
             place=path.name, value="the model", rule=str(error), remedy="correct the model"
@@ -218,8 +222,11 @@ class _Builder:
         for number in chosen:
             if number not in sets:
                 raise InputError(f"case control asks for SPC {number}, which is not there")
-            for grid, dofs in sets[number]:
-                self._hold(fixed, grid, dofs)
+            for grids, dofs in sets[number]:
+                # of a range those count that are there; a grid that is named must be
+                there = grids if len(grids) == 1 else [n for n in self._deck.grids if n in grids]
+                for grid in there:
+                    self._hold(fixed, grid, dofs)
         return fixed
 
     def _hold(self, fixed: Array, grid: int, dofs: str) -> None:

@@ -3,8 +3,8 @@
 Usage: python scripts/mutate_inputs.py [--records N] [--studies N] [--run-every N] [--seed N]
 
 300 records and models of each format and 700 studies unless told otherwise. Every tenth study that
-the check accepts is run too. Nothing may end in a traceback or a warning of Python's, execute anything, take
-more than 60 s or 4 GB. Exit code 0 if all is well, 1 if not.
+the check accepts is run too. Nothing may end in a traceback or a warning of Python's, execute
+anything, take more than 60 s or 4 GB. Exit code 0 if all is well, 1 if not.
 """
 
 from __future__ import annotations

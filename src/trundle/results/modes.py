@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.dynamics import Modes
-from trundle.structure import Structure
+from trundle.structure import Structure, node_motion
 
 __all__ = ["FirstModes", "first_modes"]
 
@@ -39,7 +38,5 @@ class FirstModes:
 
 def first_modes(modes: Modes, floor: Structure) -> FirstModes:
     """Return what results keep of a floor's modes."""
-    rows = floor.dof_index[:, 2]
-    moving = modes.first(_KEPT).at(np.maximum(rows, 0))
-    vertical = np.where(rows[:, None] >= 0, moving, 0.0)
+    vertical = modes.first(_KEPT).seen(node_motion(floor, 2))
     return FirstModes(frequencies=modes.frequencies, vertical=vertical)

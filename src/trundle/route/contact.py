@@ -12,7 +12,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
 
-from trundle._typing import Array
+from trundle._typing import Array, SparseMatrix
 from trundle.structure import ContactShape, Structure, Surface
 
 __all__ = ["ContactRows", "contact_rows"]
@@ -129,14 +129,17 @@ def contact_rows(
     turn = motion[:, moving]
     width = len(moving) * max(group.connectivity.shape[1] for group in surface.groups)
     dofs = np.full((len(places), width), -1, dtype=np.intp)
+    numbers = _numbers(floor)
     value, slope = np.zeros((len(places), width)), np.zeros((len(places), width))
     for part, rows, elements, local in surface.find(places):
         weights, gradient = part.group.weights(local, part.corners[elements], shape)
         along = np.einsum("njk,nj->nk", gradient, directions[rows])
-        at = floor.dof_index[part.elements[elements]][:, :, moving].reshape(len(rows), -1)
+        at = numbers[part.elements[elements]][:, :, moving].reshape(len(rows), -1)
         dofs[rows, : at.shape[1]] = at
         value[rows, : at.shape[1]] = _turned(weights, turn)
         slope[rows, : at.shape[1]] = _turned(along, turn)
+    if floor.expansion is not None:
+        dofs, value, slope = _by_free_dofs(dofs, value, slope, floor.expansion)
     free = dofs >= 0
     return ContactRows(
         dofs=np.where(free, dofs, 0),
@@ -145,6 +148,41 @@ def contact_rows(
         load_share=_load_share(floor, surface, places, directions),
         n_dofs=floor.n_dofs,
     )
+
+
+def _numbers(floor: Structure) -> Int[Array, "nodes 6"]:
+    """Return rows of the free dofs of nodes, or of all their dofs where some follow others."""
+    if floor.expansion is None:
+        return floor.dof_index
+    return np.arange(floor.expansion.shape[0]).reshape(-1, 6)
+
+
+def _by_free_dofs(
+    dofs: Array, value: Array, slope: Array, expansion: SparseMatrix
+) -> tuple[Array, Array, Array]:
+    """Turn weights on dofs of nodes into those on the free dofs that move them."""
+    n_rows, width = dofs.shape
+    starts = np.arange(0, n_rows * width + 1, width)
+    shape = (n_rows, expansion.shape[0])
+    at = np.maximum(dofs, 0).ravel()
+
+    def by_free(weights: Array) -> sparse.csr_array:
+        return sparse.csr_array((weights.ravel(), at, starts), shape=shape) @ expansion
+
+    there = sparse.csr_array(((dofs >= 0).astype(float).ravel(), at, starts), shape=shape)
+    used = there @ abs(expansion)
+    used.sort_indices()
+    pattern = sparse.csr_array((np.ones(used.nnz), used.indices, used.indptr), shape=used.shape)
+    row = np.repeat(np.arange(n_rows), np.diff(pattern.indptr))
+    place = np.arange(pattern.nnz) - np.repeat(pattern.indptr[:-1], np.diff(pattern.indptr))
+    found = np.full((n_rows, int(np.diff(pattern.indptr).max(initial=1))), -1, dtype=np.intp)
+    found[row, place] = pattern.indices
+    laid = []
+    for weights in (value, slope):
+        out = np.zeros(found.shape)
+        out[row, place] = np.asarray(by_free(weights)[row, pattern.indices]).ravel()
+        laid.append(out)
+    return found, laid[0], laid[1]
 
 
 def _turned(weights: Array, turn: Array) -> Array:

@@ -16,7 +16,8 @@ from trundle.structure.elements import (
     TriangleGroup,
 )
 from trundle.structure.floor import DOF_NAMES, Floor
-from trundle.structure.model import MirrorPlane, Structure
+from trundle.structure.links import RigidLinks
+from trundle.structure.model import MirrorPlane, Structure, node_motion
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.plates import (
     OrthotropicSection,
@@ -72,6 +73,7 @@ __all__ = [
     "PlateSection",
     "PointMasses",
     "Rectangle",
+    "RigidLinks",
     "ShellGroup",
     "ShellSection",
     "Spot",
@@ -89,6 +91,7 @@ __all__ = [
     "hollow_core_slab",
     "i_section",
     "mesh_lines",
+    "node_motion",
     "reference_plan",
     "reference_unit",
     "resolved_frequency",

@@ -21,6 +21,7 @@ from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Elements
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.spring import SpringGroup
+from trundle.structure.links import RigidLinks, expansion_of, follows
 from trundle.structure.model import MirrorPlane
 from trundle.structure.surface import Surface, check_names, found_surface, named_surface
 
@@ -46,6 +47,8 @@ class Floor:
         The elements.
     others : tuple of Elements
         Elements of any other kind, see `trundle.structure.elements`.
+    links : tuple of RigidLinks
+        Nodes that follow others as rigid bodies do.
     decks : tuple of Surface
         Surfaces that are driven and stood on; one called ``floor``, of the level shells or of the
         level beams without any, unless given.
@@ -67,6 +70,7 @@ class Floor:
     springs: tuple[SpringGroup, ...] = ()
     masses: tuple[PointMasses, ...] = ()
     others: tuple[Elements, ...] = ()
+    links: tuple[RigidLinks, ...] = ()
     decks: tuple[Surface, ...] = ()
     mirrors: tuple[MirrorPlane, ...] = ()
     name: str = "floor"
@@ -81,6 +85,7 @@ class Floor:
         for group in self.elements:
             _check_numbers(group, len(nodes))
         check_names(self.decks)
+        follows(self.links, len(nodes))
 
     @property
     def elements(self) -> tuple[Elements, ...]:
@@ -112,9 +117,26 @@ class Floor:
         """Row of each dof in the matrices, -1 where it is held or carries no element."""
         return self._dof_index
 
+    @property
+    def expansion(self) -> SparseMatrix | None:
+        """Motion of all nodes by the free dofs; None where `dof_index` says it all."""
+        return self._expansion
+
+    @cached_property
+    def _expansion(self) -> SparseMatrix | None:
+        if not self.links:
+            return None
+        return expansion_of(self.nodes, self._leader, self.dof_index, self.fixed)
+
+    @cached_property
+    def _leader(self) -> Int[Array, " nodes"]:
+        return follows(self.links, len(self.nodes))
+
     @cached_property
     def _dof_index(self) -> Int[Array, "nodes 6"]:
         free = ~self.fixed & self._carried
+        if self.links:
+            free[self._leader >= 0] = False
         index = np.full(self.fixed.shape, -1, dtype=np.intp)
         index[free] = np.arange(np.count_nonzero(free))
         index.setflags(write=False)
@@ -187,32 +209,41 @@ class Floor:
         for group in self.elements:
             ends = group.connectivity[group.connectivity != GROUND]
             carried[ends] |= group.carried
+        for link in self.links:
+            carried[link.leads] = True
         return carried
 
     def _assemble(self, blocks: Callable[[Elements, Array], Array | None]) -> SparseMatrix:
         rows, columns, values = [], [], []
+        expansion = self.expansion
+        numbers, size = self.dof_index, self.n_dofs
+        if expansion is not None:  # of every dof first, then by those that move by themselves
+            numbers, size = np.arange(self.fixed.size).reshape(-1, 6), self.fixed.size
         for group in self.elements:
             matrices = blocks(group, self.nodes[group.connectivity])
             if matrices is None:
                 continue
-            dofs = self._element_dofs(group.connectivity)
+            dofs = _element_dofs(numbers, group.connectivity)
             row = np.broadcast_to(dofs[:, :, None], matrices.shape)
             column = np.broadcast_to(dofs[:, None, :], matrices.shape)
             keep = (row >= 0) & (column >= 0)
             rows.append(row[keep])
             columns.append(column[keep])
             values.append(matrices[keep])
-        shape = (self.n_dofs, self.n_dofs)
+        shape = (size, size)
         entries = np.concatenate(values)
         at = (np.concatenate(rows), np.concatenate(columns))
         matrix = sparse.coo_array((entries, at), shape=shape).tocsc()
         matrix.sum_duplicates()
+        if expansion is not None:
+            matrix = (expansion.T @ matrix @ expansion).tocsc()
         return _without_noughts(matrix)
 
-    def _element_dofs(self, elements: Array) -> Array:
-        dofs = self.dof_index[elements]
-        dofs = np.where(elements[:, :, None] == GROUND, -1, dofs)
-        return dofs.reshape(len(elements), -1)
+
+def _element_dofs(numbers: Array, elements: Array) -> Array:
+    """Return the rows of elements' dofs, -1 at the ground and where there is none."""
+    dofs = np.where(elements[:, :, None] == GROUND, -1, numbers[elements])
+    return dofs.reshape(len(elements), -1)
 
 
 def _without_noughts(matrix: SparseMatrix) -> SparseMatrix:

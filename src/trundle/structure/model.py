@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
+import numpy as np
 from jaxtyping import Float, Int
+from scipy import sparse
 
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
@@ -14,7 +16,7 @@ from trundle.dynamics import Factor, Modes
 from trundle.structure.elements import Elements
 from trundle.structure.surface import Surface
 
-__all__ = ["MirrorPlane", "Structure"]
+__all__ = ["MirrorPlane", "Structure", "node_motion"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,6 +75,11 @@ class Structure(Protocol):
         ...
 
     @property
+    def expansion(self) -> SparseMatrix | None:
+        """Motion of all nodes by the free dofs, (6 n_nodes, n_dofs); None: `dof_index` says it."""
+        ...
+
+    @property
     def content_hash(self) -> str:
         """Hash of all that decides its motion; equal structures share it."""
         ...
@@ -102,3 +109,13 @@ class Structure(Protocol):
     def matrices(self) -> tuple[SparseMatrix, SparseMatrix]:
         """Return mass [kg] and stiffness [N/m]; refused by one that is known by its modes alone."""
         ...
+
+
+def node_motion(structure: Structure, dof: int) -> SparseMatrix:
+    """Return rows of weights that give one dof of every node, (n_nodes, n_dofs)."""
+    if structure.expansion is not None:
+        return structure.expansion[dof::6]
+    rows = structure.dof_index[:, dof]
+    moving = np.flatnonzero(rows >= 0)
+    entries = (np.ones(len(moving)), (moving, rows[moving]))
+    return sparse.csr_array(entries, shape=(len(rows), structure.n_dofs))

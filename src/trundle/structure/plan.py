@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import get_args
+from typing import Literal, get_args
 
 import numpy as np
 from jaxtyping import Float
@@ -16,6 +16,7 @@ from trundle.errors import InputError
 from trundle.structure.edges import EDGES, Edge, hold_edge, hold_plane, middle_of
 from trundle.structure.elements import BeamGroup, ShellGroup
 from trundle.structure.floor import Floor
+from trundle.structure.links import RigidLinks
 from trundle.structure.model import MirrorPlane
 from trundle.structure.sections import BeamSection, Material, ShellSection
 
@@ -77,6 +78,9 @@ class FloorPlan:
         Beams and columns on a symmetry edge get half their stiffness and mass.
     eccentric_beams : bool
         Beams hang below the slab (True) or lie in its mid-plane (False).
+    column_heads : {"point", "rigid"}
+        A column meets the slab at one node, as a needle would, or over its cross-section, which
+        moves as a rigid body: without beams only the latter settles as the mesh is refined.
     name : str
         Name for reports.
     """
@@ -96,6 +100,7 @@ class FloorPlan:
     storey_above: float = 0.0
     edges: dict[str, Edge] = field(default_factory=dict[str, Edge])
     eccentric_beams: bool = True
+    column_heads: Literal["point", "rigid"] = "point"
     name: str = "storey"
 
     def __post_init__(self) -> None:
@@ -120,6 +125,7 @@ class FloorPlan:
             one_of("edge", edge, EDGES)
             one_of(f"edges.{edge}", kind, get_args(Edge))
         count("secondary_per_bay", self.secondary_per_bay)
+        one_of("column_heads", self.column_heads, ("point", "rigid"))
 
     @property
     def has_columns(self) -> bool:
@@ -187,6 +193,7 @@ def build_floor(plan: FloorPlan, *, mesh_size: float) -> Floor:
         fixed=np.vstack([fixed, column_fixed]),
         shells=(ShellGroup(elements=elements, section=plan.slab),),
         beams=(*beams, *columns),
+        links=_heads(plan, x, y, grid),
         mirrors=_mirrors(plan),
         name=plan.name,
     )
@@ -197,9 +204,40 @@ def mesh_lines(
 ) -> tuple[Float[Array, " columns"], Float[Array, " rows"]]:
     """Return the lines of a plan's mesh along x and along y [m]; its nodes are their crossings."""
     return (
-        _mesh_line(plan.x_extent, [plan.x_lines, plan.secondary_lines], mesh_size),
-        _mesh_line(plan.y_extent, [plan.y_lines], mesh_size),
+        _mesh_line(
+            plan.x_extent, [plan.x_lines, plan.secondary_lines, _faces(plan, "x")], mesh_size
+        ),
+        _mesh_line(plan.y_extent, [plan.y_lines, _faces(plan, "y")], mesh_size),
     )
+
+
+def _faces(plan: FloorPlan, axis: str) -> Array:
+    """Return where the faces of columns that are joined over their cross-section stand [m]."""
+    if plan.column is None or not plan.has_columns or plan.column_heads == "point":
+        return np.zeros(0)
+    lines, size = (
+        (plan.x_lines, plan.column.depth) if axis == "x" else (plan.y_lines, plan.column.width)
+    )
+    low, high = plan.x_extent if axis == "x" else plan.y_extent
+    both = np.concatenate([lines - 0.5 * size, lines + 0.5 * size])
+    return both[(both > low) & (both < high)]
+
+
+def _heads(plan: FloorPlan, x: Array, y: Array, grid: Array) -> tuple[RigidLinks, ...]:
+    """Return the slab's nodes within each column, which follow the one on its axis."""
+    if plan.column is None or not plan.has_columns or plan.column_heads == "point":
+        return ()
+    leads, behind = [], []
+    for x_station in plan.x_lines:
+        for y_station in plan.y_lines:
+            head = int(grid[_at(y, y_station), _at(x, x_station)])
+            within_x = np.abs(x - x_station) <= 0.5 * plan.column.depth + _SNAP
+            within_y = np.abs(y - y_station) <= 0.5 * plan.column.width + _SNAP
+            inside = grid[np.ix_(within_y, within_x)].ravel()
+            follow = inside[inside != head]
+            behind.append(follow)
+            leads.append(np.full(len(follow), head))
+    return (RigidLinks(leads=np.concatenate(leads), follows=np.concatenate(behind)),)
 
 
 def _mirrors(plan: FloorPlan) -> tuple[MirrorPlane, ...]:

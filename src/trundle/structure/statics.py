@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import positive
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.structure.model import Structure
+from trundle.structure.model import Structure, node_motion
 
 __all__ = ["self_weight_deflection"]
 
@@ -39,5 +38,4 @@ def self_weight_deflection(floor: Structure, *, gravity: float = 9.81) -> Float[
     if flexibility is None:
         raise InputError(f"{floor.name} is known by its modes: nothing says how it sinks")
     u = flexibility.solve(-positive("gravity", gravity) * floor.inertia_of(2))
-    rows = floor.dof_index[:, 2]
-    return np.where(rows >= 0, u[np.maximum(rows, 0)], 0.0)
+    return node_motion(floor, 2) @ u

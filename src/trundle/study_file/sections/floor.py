@@ -93,6 +93,7 @@ class PlanFloorSection(Section):
     storey_below: NonNegativeLength = 0.0
     storey_above: NonNegativeLength = 0.0
     eccentric_beams: Flag = True
+    column_heads: Literal["point", "rigid"] = "point"
     edges: EdgesSection = EdgesSection()
 
 
@@ -216,6 +217,7 @@ def floor_plan_of(section: PlanFloorSection) -> FloorPlan:
         storey_above=section.storey_above,
         edges=dict(section.edges),
         eccentric_beams=section.eccentric_beams,
+        column_heads=section.column_heads,
     )
 
 

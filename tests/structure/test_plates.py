@@ -11,8 +11,8 @@ from trundle.errors import InputError
 from trundle.structure import CONCRETE, BeamSection, Floor, ShellGroup, ShellSection, TriangleGroup
 from trundle.structure.elements.quad_shell import shell_stiffness
 from trundle.structure.elements.triangle_shell import triangle_stiffness
-from trundle.structure.plates import (
-    OrthotropicSection,
+from trundle.structure.plates import OrthotropicSection
+from trundle.structure.smeared import (
     composite_deck,
     hollow_core_slab,
     ribbed_slab,

@@ -19,13 +19,7 @@ from trundle.structure.floor import DOF_NAMES, Floor
 from trundle.structure.links import RigidLinks
 from trundle.structure.model import MirrorPlane, Structure, node_motion
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
-from trundle.structure.plates import (
-    OrthotropicSection,
-    composite_deck,
-    hollow_core_slab,
-    ribbed_slab,
-    waffle_slab,
-)
+from trundle.structure.plates import OrthotropicSection
 from trundle.structure.profiles import (
     STEEL,
     box_section,
@@ -47,6 +41,12 @@ from trundle.structure.sections import (
     Material,
     PlateSection,
     ShellSection,
+)
+from trundle.structure.smeared import (
+    composite_deck,
+    hollow_core_slab,
+    ribbed_slab,
+    waffle_slab,
 )
 from trundle.structure.statics import self_weight_deflection
 from trundle.structure.surface import Frame, Spot, Spots, Surface

@@ -65,6 +65,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/exact_statistics.py
 	$(BIN)/python benchmarks/floor_map.py
 	$(BIN)/python benchmarks/scaling.py
+	$(BIN)/python benchmarks/long_record.py
 	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/estimate.py
 

@@ -1,0 +1,174 @@
+"""Histories, spectra, peaks and roads in pictures: the numbers, units and names that they show."""
+
+import re
+
+import numpy as np
+import pytest
+from jinja2 import UndefinedError
+
+import trundle as tr
+from studies import GOOD
+from trundle.criteria import find_criterion
+from trundle.report.canvas import Drawing, class_colours, make_logarithmic, new_figure
+from trundle.report.figures import response, road
+from trundle.report.html import embedded, template
+from trundle.road import CLASS_NAMES, RoadClass
+from trundle.units import GAL, MICROMETRE_PER_SECOND
+
+TWO = """
+[[road]]
+class = "C"
+
+[[point]]
+name = "stage <2>"
+at = ["8 m", "4 m"]
+"""
+
+
+@pytest.fixture(scope="module")
+def result():
+    """Two roads and two points, a velocity curve and a peak limit."""
+    text = GOOD.replace('["VC-A"]', '["VC-A", "stepper-B"]') + TWO
+    return tr.run_study(tr.study_from_text(text))
+
+
+@pytest.fixture(scope="module")
+def drawn(result):
+    return {drawing.name: drawing for drawing in response.drawings(result)}
+
+
+def test_every_point_and_road_has_its_pictures(drawn):
+    """A history a point, peaks a point, spectra a point and road; numbers behind the first."""
+    assert set(drawn) == {
+        "history_1", "history_1_2", "criteria_acceleration", "criteria_acceleration_2",
+        "criteria_velocity_1", "criteria_velocity_2", "criteria_velocity_1_2",
+        "criteria_velocity_2_2",
+    }  # fmt: skip
+    assert drawn["criteria_velocity_2_2"].title.endswith("at stage <2> against criteria, class C")
+
+
+def test_a_history_is_the_first_run_in_gal(drawn, result):
+    """A panel for each road, its peak above it."""
+    figure = drawn["history_1_2"].draw()
+    for panel, label in zip(figure.axes, ("B", "C"), strict=True):
+        (cell,) = [c for key, c in result.cells.items() if key.road == label]
+        expected = cell.history.acceleration[:, 1] / GAL
+        np.testing.assert_allclose(panel.lines[0].get_ydata(), expected)
+        assert f"class {label}: peak {np.abs(expected).max():.3g} gal" in panel.get_title(
+            loc="left"
+        )
+        assert panel.get_xlabel() == "time [s]"
+    assert figure.axes[0].get_ylabel() == "a [gal]"
+
+
+def test_spectra_are_the_median_of_the_runs_beside_the_curve(drawn, result):
+    """In um/s on both axes logarithmic; the criterion's own limits, its name at its end."""
+    (axes,) = drawn["criteria_velocity_2"].draw().axes
+    (cell,) = [c for key, c in result.cells.items() if key.road == "C"]
+    marked = next(line for line in axes.lines if line.get_marker() == "o")
+    expected = cell.spectra.percentile(50.0)[0] / MICROMETRE_PER_SECOND
+    np.testing.assert_allclose(marked.get_ydata(), expected)
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
+    curve = find_criterion("VC-A")
+    black = next(line for line in axes.lines if line.get_color() == "black")
+    np.testing.assert_allclose(black.get_ydata(), curve.limits / MICROMETRE_PER_SECOND)
+    assert curve.title in [t.get_text() for t in axes.texts]
+    assert "um/s" in axes.get_ylabel()
+
+
+def test_peaks_stand_beside_their_limit(drawn, result):
+    """A bar a road from 5 to 95 %, the limit of the stepper as a line with its number."""
+    (axes,) = drawn["criteria_acceleration"].draw().axes
+    assert [t.get_text() for t in axes.get_xticklabels()] == ["main, B", "main, C"]
+    for x, label in enumerate("BC"):
+        (cell,) = [c for key, c in result.cells.items() if key.road == label]
+        peaks = cell.peak_acceleration[:, 0] / GAL
+        bars = [line for line in axes.lines if list(line.get_xdata()) == [x, x]]
+        np.testing.assert_allclose(bars[0].get_ydata(), np.percentile(peaks, [5.0, 95.0]))
+    limit = find_criterion("stepper-B").limits[0] / GAL
+    assert any(re.search(rf", {limit:g} gal$", t.get_text()) for t in axes.texts)
+
+
+def test_roughness_is_drawn_as_the_standard_gives_it(result):
+    """Eight classes over three decades of n: ``Gd(n0) (n / n0)^-2``."""
+    figure = next(iter(road.drawings(result))).draw()
+    (axes,) = figure.axes
+    lines = [line for line in axes.lines if len(line.get_xdata()) == 2]
+    assert len(lines) == len(CLASS_NAMES)
+    for line, name in zip(lines, CLASS_NAMES, strict=True):
+        n, psd = line.get_data()
+        np.testing.assert_allclose(psd, RoadClass(name).roughness * (n / 0.1) ** -2.0)
+    assert [t.get_text() for t in axes.texts][:8] == list(CLASS_NAMES)
+
+
+def test_profiles_grow_with_their_class(result):
+    """Each class is twice as high as the one before: the same phases, four times the power."""
+    drawings = {drawing.name: drawing for drawing in road.drawings(result)}
+    (axes,) = drawings["profiles"].draw().axes
+    heights = [np.std(line.get_ydata()) for line in axes.lines]
+    np.testing.assert_allclose(np.array(heights[:-1]) / heights[1:], 2.0, rtol=1e-9)
+    assert [t.get_text() for t in axes.get_legend().get_texts()] == [f"class {c}" for c in "DCBA"]
+
+
+def test_pages_escape_what_they_are_given(result):
+    """A point's name with a tag in it is text, wherever it stands."""
+    page = template("mitigation.html.j2")
+    assert page.environment.autoescape is True
+    shown = page.environment.from_string("<p>{{ name }}</p>").render(name="<script>x</script>")
+    assert shown == "<p>&lt;script&gt;x&lt;/script&gt;</p>"
+    with pytest.raises(UndefinedError):
+        page.environment.from_string("{{ nothing }}").render()
+
+
+def test_numbers_on_a_page_have_three_digits():
+    page = template("report.html.j2").environment
+    rendered = page.from_string("{{ a|sig }} {{ b|sig }} {{ c|sig }}").render(
+        a=1234.5, b=0.012345, c=7.0
+    )
+    assert rendered == "1230 0.0123 7"
+
+
+def test_pictures_are_told_and_kept(tmp_path):
+    """PNG and SVG of each, the picture's data in the page, shares rising."""
+    told = []
+    one = Drawing(name="a", title="A", caption="c", draw=lambda: new_figure()[0])
+    two = Drawing(name="b", title="B", caption="c", draw=lambda: new_figure()[0])
+    pictures = embedded([one, two], tmp_path / "figures", tell=lambda *args: told.append(args))
+    assert [p["name"] for p in pictures] == ["a", "b"]
+    assert told == [("figure: A", 0.0), ("figure: B", 0.5)]
+    assert sorted(f.name for f in (tmp_path / "figures").iterdir()) == [
+        "a.png", "a.svg", "b.png", "b.svg",
+    ]  # fmt: skip
+    assert pictures[0]["data"].startswith("iVBOR")
+
+
+def test_the_same_drawing_is_the_same_bytes(tmp_path):
+    """No date, no random names: pictures can be compared."""
+
+    def draw():
+        figure, (axes,) = new_figure()
+        axes.plot([0.0, 1.0], [1.0, 3.0])
+        return figure
+
+    files = []
+    for name in ("x", "y"):
+        (tmp_path / name).mkdir()
+        Drawing(name="p", title="P", caption="", draw=draw).save(tmp_path / name)
+        files.append([(tmp_path / name / f"p.{kind}").read_bytes() for kind in ("png", "svg")])
+    assert files[0] == files[1]
+
+
+def test_nothing_above_nought_stays_linear():
+    """A logarithm has no place for what is all 0; it is drawn plainly instead of not at all."""
+    _, (axes,) = new_figure()
+    axes.plot([1.0, 2.0], [0.0, 0.0])
+    make_logarithmic(axes, "xy")
+    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "linear")
+
+
+@pytest.mark.parametrize("n", [3, 7, 10])
+def test_classes_have_colours_of_their_own(n):
+    """Grey for what is not assessed, and no two alike."""
+    colours = class_colours(n)
+    assert len(set(colours)) == n
+    assert colours[0] == "#d9d9d9"

@@ -102,11 +102,19 @@ def test_roughness_is_drawn_as_the_standard_gives_it(result):
 
 
 def test_profiles_grow_with_their_class(result):
-    """Each class is twice as high as the one before: the same phases, four times the power."""
+    """Each class is twice as high as the one before: the same phases, four times the power.
+
+    The variance of the lowest is its PSD's integral, ``G n0^2 (1 / n1 - 1 / n2)``, in cm2; a hundred
+    metres hold few of the longest waves, hence the fifth.
+    """
     drawings = {drawing.name: drawing for drawing in road.drawings(result)}
     (axes,) = drawings["profiles"].draw().axes
     heights = [np.std(line.get_ydata()) for line in axes.lines]
     np.testing.assert_allclose(np.array(heights[:-1]) / heights[1:], 2.0, rtol=1e-9)
+    band, roughness = result.study.band, RoadClass("A", level="upper").roughness
+    variance = roughness * 0.1**2 * (1.0 / band.n_min - 1.0 / band.n_max)
+    assert heights[-1] == pytest.approx(100.0 * np.sqrt(variance), rel=0.2)
+    assert axes.get_ylabel() == "elevation [cm]"
     assert [t.get_text() for t in axes.get_legend().get_texts()] == [f"class {c}" for c in "DCBA"]
 
 

@@ -40,9 +40,16 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "wavenumber": ("1/m", "0.011 1/m"),
     "mass": ("kg", "40.7 t"),
     "area density": ("kg/m**2", "500 kg/m2"),
+    "line density": ("kg/m", "120 kg/m"),
     "density": ("kg/m**3", "2450 kg/m3"),
     "pressure": ("kg/m/s**2", "30 GPa"),
+    "load": ("kg/m/s**2", "3 kN/m2"),
     "stiffness": ("kg/s**2", "14700 N/cm"),
+    "stiffness per metre": ("kg/m/s**2", "50 MN/m/m"),
+    "rotational stiffness": ("kg*m**2/s**2", "20 MN m/rad"),
+    "angle": ("rad", "30 deg"),
+    "area": ("m**2", "84.5 cm2"),
+    "second moment": ("m**4", "23130 cm4"),
     "damping coefficient": ("kg/s", "10 kN s/m"),
     "moment of inertia": ("kg*m**2", "4600 kg m2"),
     "acceleration": ("m/s**2", "0.3 gal"),
@@ -59,6 +66,7 @@ _COUNTED = {
     "frequency": {"hertz", "kilohertz", "megahertz", "cycle", *_SECONDS},
     "rate": {"hertz", "kilohertz", *_SECONDS},
     "ratio": {"percent", "permille", "ppm"},
+    "angle": {"degree", "radian", "gradian"},
 }
 _CYCLIC = ("frequency", "wavenumber")
 _UNIT_CHARACTERS = re.compile(r"^[A-Za-zµμ%/*^()·\s\d²³-]*$")
@@ -68,7 +76,7 @@ _GRAVITY = re.compile(r"\b(?P<prefix>[muµμ]?)gn?\b")
 _TOWER = re.compile(
     r"(?:\*\*|\^)\s*[(+-]*\d{2,}|(?:\*\*|\^)[^A-Za-z/]*?\d\s*\)*\s*(?:\*\*|\^)|\d{6,}"
 )
-_POWER = re.compile(r"(?<=[A-Za-zµμ])([23])\b")
+_POWER = re.compile(r"(?<=[A-Za-zµμ])([234])\b")
 
 
 def to_si(text: object, dimension: str) -> float:
@@ -159,6 +167,9 @@ def _registry() -> tuple[Any, Any]:
     registry.define("kNs = kilonewton * second")
     registry.define("cycle = 1")
     registry.define("Ns = newton * second")
+    registry.define("Nm = newton * meter")  # or it would be a nautical mile's neighbour
+    registry.define("kNm = kilonewton * meter")
+    registry.define("MNm = meganewton * meter")
     return registry, pint
 
 

@@ -34,9 +34,11 @@ def plan_sketch(study: Study) -> str:
         speed = 3.6 * float(drive.route.law.speed(0.0))
         _put(drive.route.points[-1:], ">")
         legend.append(f"  {letter}  route {name}: {speed:g} km/h, ends at >")
-    for i, (name, place) in enumerate(study.points.items()):
-        _put(np.array([place]), str((i + 1) % 10))
-        legend.append(f"  {(i + 1) % 10}  point {name} at ({place[0]:g}, {place[1]:g}) m")
+    for i, (name, spot) in enumerate(study.points.items()):
+        place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)
+        _put(place, str((i + 1) % 10))
+        on = "" if spot.on is None else f" on {spot.on}"
+        legend.append(f"  {(i + 1) % 10}  point {name} at ({place[0, 0]:g}, {place[0, 1]:g}) m{on}")
     border = "." + "-" * _WIDTH + "."
     rows = ["|" + "".join(row) + "|" for row in grid[::-1]]
     size = f"x {x0:g} to {x1:g} m across, y {y0:g} to {y1:g} m up; + column"

@@ -108,8 +108,8 @@ def _summary_dataset(result: StudyResult) -> xr.Dataset:
             "run": np.arange(result.study.runs),
             "point": list(result.study.points),
             "band": ("band", first.spectra.mid_band, {"units": "Hz"}),
-            "point_x": ("point", [p[0] for p in result.study.points.values()], {"units": "m"}),
-            "point_y": ("point", [p[1] for p in result.study.points.values()], {"units": "m"}),
+            "point_x": ("point", [spot.x for spot in result.study.points.values()], {"units": "m"}),
+            "point_y": ("point", [spot.y for spot in result.study.points.values()], {"units": "m"}),
         },
     )
 

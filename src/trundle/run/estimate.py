@@ -5,7 +5,7 @@ The number of modes is Weyl's for a plate: ``A f sqrt(m / D) / 2``, beams left o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from trundle.run.costs import Size, run_in_steps
 from trundle.run.jobs import Job, plan_jobs
 from trundle.run.mode_cache import has_modes
 from trundle.run.tasks import tasks_of
-from trundle.structure import FloorPlan
+from trundle.structure import PlateSection, bending_wave
 from trundle.study.model import Study
 
 __all__ = [
@@ -80,7 +80,7 @@ def estimate_of(study: Study) -> Estimate:
     """
     jobs = plan_jobs(study)
     n_dofs = study.floor.n_dofs
-    most = max(n_modes_of(study.plan, job) for job in jobs)
+    most = max(n_modes_of(study, job) for job in jobs)
     spent = {"modes of the floor": seconds_of_modes(study, jobs)}
     for job in jobs:
         name = f"{job.case.name}, {job.method.name}"
@@ -95,7 +95,7 @@ def estimate_of(study: Study) -> Estimate:
 
 def size_of(study: Study, job: Job) -> Size:
     """Return how large a study's floor is for one of its jobs."""
-    return Size(n_dofs=study.floor.n_dofs, n_modes=n_modes_of(study.plan, job))
+    return Size(n_dofs=study.floor.n_dofs, n_modes=n_modes_of(study, job))
 
 
 def job_seconds(job: Job, size: Size) -> float:
@@ -127,18 +127,29 @@ def memory_there_is() -> float:
     return max(there, 0.0)
 
 
-def n_modes_of(plan: FloorPlan | None, job: Job) -> float:
-    """Return about how many modes a job's method keeps."""
+def n_modes_of(study: Study, job: Job) -> float:
+    """Return about how many modes a job's method keeps.
+
+    A plate has ``A f / 2 sqrt(m / D)`` modes below f (Weyl).
+    """
     integration = job.method.interaction.integration
     if integration.f_max is None:
         return 0.0
-    if plan is None:
+    plates = list(_plates(study))
+    if not plates:
         return _USUAL_MODES * integration.f_max / 100.0
-    slab, material = plan.slab, plan.slab.material
-    area = float(np.ptp(plan.x_extent) * np.ptp(plan.y_extent))
-    stiffness = material.elastic_modulus * slab.thickness**3 / 12.0
-    mass = material.density * slab.thickness + slab.superimposed_mass
-    return 1.0 + 0.5 * area * integration.f_max * float(np.sqrt(mass / stiffness))
+    return 1.0 + sum(
+        np.pi * area * integration.f_max / bending_wave(section) for area, section in plates
+    )
+
+
+def _plates(study: Study) -> Iterator[tuple[float, PlateSection]]:
+    """Give the area and the section of every slab [m2]."""
+    if study.plan is not None:
+        yield float(np.ptp(study.plan.x_extent) * np.ptp(study.plan.y_extent)), study.plan.slab
+    if study.building is not None:
+        for slab in (*study.building.slabs, *study.building.ramps):
+            yield slab.area, slab.section
 
 
 def seconds_of_modes(study: Study, jobs: Sequence[Job]) -> float:
@@ -147,7 +158,7 @@ def seconds_of_modes(study: Study, jobs: Sequence[Job]) -> float:
     f_max = max((i.f_max or 0.0 for i in integrations), default=0.0)
     if f_max == 0.0 or has_modes(study.floor, f_max):
         return 0.0
-    n_modes = max(n_modes_of(study.plan, job) for job in jobs)
+    n_modes = max(n_modes_of(study, job) for job in jobs)
     return mode_seconds(study.floor.n_dofs, n_modes)
 
 

@@ -22,6 +22,7 @@ from trundle.simulate import (
     lay_out_places,
 )
 from trundle.simulate.ensembles import runs_at_once
+from trundle.structure import Spot
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Case, MethodPlan, Study
 
@@ -54,7 +55,7 @@ class Job:
         Numbers of the runs that are computed together.
     n_waves : int
         Waves of each road for exact statistics, 0 for none.
-    points : mapping of str to (x, y)
+    points : mapping of str to Spot
         Where the response is read [m].
     duration : float
         Length of the record [s].
@@ -79,7 +80,7 @@ class Job:
     factors: Mapping[str, float]
     parts: tuple[range, ...]
     n_waves: int
-    points: Mapping[str, tuple[float, float]]
+    points: Mapping[str, Spot]
     duration: float
     seed: int
     averaging: Averaging

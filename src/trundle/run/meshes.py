@@ -9,11 +9,9 @@ from jaxtyping import Float
 
 from trundle._progress import Tell, silent
 from trundle._typing import Array
-from trundle.errors import InputError
 from trundle.response import BandSpectra
 from trundle.run.whole_study import run_study
 from trundle.signals import mid_band_frequencies
-from trundle.structure import build_floor
 from trundle.study.model import Study
 
 __all__ = ["MeshComparison", "compare_meshes", "on_two_meshes"]
@@ -74,10 +72,7 @@ def on_two_meshes(study: Study) -> tuple[Study, Study]:
         printed=(),
         printed_bounds=(),
     )
-    if study.plan is None:
-        raise InputError(f"{study.floor.name} came as a mesh: only a plan can be meshed anew")
-    half = 0.5 * study.mesh_size
-    return small, replace(small, floor=build_floor(study.plan, mesh_size=half), mesh_size=half)
+    return small, small.meshed(0.5)
 
 
 def compare_meshes(study: Study, *, tell: Tell | None = None) -> MeshComparison:

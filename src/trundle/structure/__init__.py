@@ -32,6 +32,9 @@ from trundle.structure.profiles import (
 from trundle.structure.reference import reference_plan, reference_unit
 from trundle.structure.resolution import (
     ELEMENTS_PER_WAVE,
+    bending_wave,
+    building_mesh_size,
+    building_resolution,
     resolved_frequency,
     resolving_mesh_size,
 )
@@ -85,8 +88,11 @@ __all__ = [
     "TriangleGroup",
     "arching",
     "beam_bridge",
+    "bending_wave",
     "box_section",
     "build_floor",
+    "building_mesh_size",
+    "building_resolution",
     "composite_deck",
     "hollow_core_slab",
     "i_section",

@@ -25,6 +25,7 @@ __all__ = [
     "i_section",
     "rolled_section",
     "rolled_sections",
+    "rolled_sizes",
     "t_section",
     "tube_section",
 ]
@@ -224,14 +225,25 @@ def rolled_section(name: str, material: Material = STEEL) -> BeamSection:
     InputError
         A section that is not listed.
     """
+    depth, width, web, flange, radius = rolled_sizes(name)
+    return i_section(depth, width, web, flange, material, radius=radius)
+
+
+def rolled_sizes(name: str) -> tuple[float, ...]:
+    """Return depth, flange width, web, flange and root radius of a rolled section [m].
+
+    Raises
+    ------
+    InputError
+        A section that is not listed.
+    """
     wanted = _plain(name)
     known = {_plain(listed): listed for listed in _rolled()}
     if wanted not in known:
         near = get_close_matches(wanted, known, n=3, cutoff=0.5)
         said = ", ".join(known[one] for one in near) or "IPE, HEA, HEB and W sections"
         raise InputError(f"no rolled section {name!r}; there is {said}")
-    depth, width, web, flange, radius = (_MM * size for size in _rolled()[known[wanted]])
-    return i_section(depth, width, web, flange, material, radius=radius)
+    return tuple(_MM * size for size in _rolled()[known[wanted]])
 
 
 def _plain(name: str) -> str:

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from trundle._checks import positive
 from trundle.structure.plan import FloorPlan, mesh_lines
-from trundle.structure.sections import ShellSection
+from trundle.structure.plates import OrthotropicSection
+from trundle.structure.sections import PlateSection
 
-__all__ = ["ELEMENTS_PER_WAVE", "resolved_frequency", "resolving_mesh_size"]
+__all__ = [
+    "ELEMENTS_PER_WAVE",
+    "bending_wave",
+    "building_mesh_size",
+    "building_resolution",
+    "resolved_frequency",
+    "resolving_mesh_size",
+]
 
 ELEMENTS_PER_WAVE = 7
 """Elements that a bending wave needs for its frequency to stay within its one-third-octave band.
@@ -47,17 +57,40 @@ def resolved_frequency(plan: FloorPlan, mesh_size: float) -> float:
     """
     lines = mesh_lines(plan, mesh_size=positive("mesh_size", mesh_size))
     longest = max(float(np.diff(line).max()) for line in lines)
-    return _speed(plan.slab) / (ELEMENTS_PER_WAVE * longest) ** 2
+    return bending_wave(plan.slab) / (ELEMENTS_PER_WAVE * longest) ** 2
 
 
 def resolving_mesh_size(plan: FloorPlan, f: float) -> float:
     """Return the mesh size that carries bending waves up to a frequency [Hz], in metres."""
-    return float(np.sqrt(_speed(plan.slab) / positive("f", f))) / ELEMENTS_PER_WAVE
+    return float(np.sqrt(bending_wave(plan.slab) / positive("f", f))) / ELEMENTS_PER_WAVE
 
 
-def _speed(slab: ShellSection) -> float:
-    """Return frequency times wavelength squared of a bending wave, 2 pi sqrt(D / m) [m2/s]."""
-    material = slab.material
-    bending = material.elastic_modulus * slab.thickness**3 / 12.0
-    bending /= 1.0 - material.poisson_ratio**2
-    return float(2.0 * np.pi * np.sqrt(bending / slab.mass_per_area))
+def bending_wave(slab: PlateSection) -> float:
+    """Return frequency times wavelength squared of bending waves, 2 pi sqrt(D / m) [m2/s].
+
+    Of a plate that is not alike in all directions, along the softer of its axes.
+    """
+    along = np.array([slab.axis]) if isinstance(slab, OrthotropicSection) else np.eye(3)[:1]
+    frame = np.array([[along[0], np.cross([0.0, 0.0, 1.0], along[0]), [0.0, 0.0, 1.0]]])
+    bending = np.asarray(slab.laws(frame).bending).reshape(-1, 3, 3)[0]
+    return float(2.0 * np.pi * np.sqrt(min(bending[0, 0], bending[1, 1]) / slab.mass_per_area))
+
+
+def building_resolution(sections: Iterable[PlateSection], size: float) -> float:
+    """Return the highest frequency whose bending waves elements of a size carry [Hz].
+
+    Parameters
+    ----------
+    sections : iterable of PlateSection
+        The plates of the building; the one with the shortest waves decides.
+    size : float
+        Longest edge of an element [m].
+    """
+    slowest = min((bending_wave(section) for section in sections), default=np.inf)
+    return float(slowest / (ELEMENTS_PER_WAVE * positive("size", size)) ** 2)
+
+
+def building_mesh_size(sections: Iterable[PlateSection], f: float) -> float:
+    """Return the size of elements that carry bending waves up to a frequency [Hz], in metres."""
+    slowest = min((bending_wave(section) for section in sections), default=np.inf)
+    return float(np.sqrt(slowest / positive("f", f))) / ELEMENTS_PER_WAVE

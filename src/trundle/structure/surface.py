@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 
 from trundle._checks import finite, frozen_array, set_frozen
@@ -109,6 +109,15 @@ class Frame:
         """Lie level at a height [m], with the axes of the plan."""
         return cls(origin=np.array([0.0, 0.0, height]))
 
+    @classmethod
+    def through(cls, plane: Float[Array, " 3"]) -> Frame:
+        """Lie in a plane ``z = plane[0] + plane[1] x + plane[2] y``; x runs along the plan's."""
+        x_axis = np.array([1.0, 0.0, plane[1]])
+        up = np.array([-plane[1], -plane[2], 1.0])
+        x_axis, up = x_axis / np.linalg.norm(x_axis), up / np.linalg.norm(up)
+        origin = np.array([0.0, 0.0, plane[0]])
+        return cls(origin=origin, x_axis=x_axis, y_axis=np.cross(up, x_axis))
+
     @property
     def normal(self) -> Float[Array, " 3"]:
         """Direction that points away from the surface."""
@@ -121,6 +130,16 @@ class Frame:
     def in_space(self, xy: Float[Array, "n 2"]) -> Float[Array, "n 3"]:
         """Return where in space places of the surface are [m]."""
         return self.origin + xy @ np.array([self.x_axis, self.y_axis])
+
+    def from_plan(self, xy: Float[Array, "n 2"]) -> Float[Array, "n 2"]:
+        """Return where in the surface places of the plan lie, straight above or below them [m]."""
+        normal = self.normal
+        rise = (self.origin[:2] - xy) @ normal[:2] / normal[2] + self.origin[2]
+        return self.coordinates(np.column_stack([xy, rise]))[:, :2]
+
+    def to_plan(self, xy: Float[Array, "n 2"]) -> Float[Array, "n 2"]:
+        """Return where in plan places of the surface are [m]."""
+        return self.in_space(xy)[:, :2]
 
     @cached_property
     def motion(self) -> Float[Array, "3 6"]:
@@ -156,6 +175,11 @@ class Surface:
     nodes: Float[Array, "nodes 3"]
     groups: tuple[Standable, ...]
     frame: Frame
+
+    def __repr__(self) -> str:
+        """Say in a line what it is."""
+        n = sum(len(part.elements) for part in self._parts)
+        return f"<Surface {self.name!r}: {n} elements>"
 
     def __post_init__(self) -> None:
         """Check that something can be stood on."""
@@ -232,8 +256,22 @@ class Surface:
             if rows.size:
                 yield part, rows, numbers[rows] - part.first, local[rows]
 
+    def holds(self, places: Float[Array, "n 2"]) -> Bool[Array, " n"]:
+        """Return which places some element lies under."""
+        blocks = [
+            self._nearest(places[i : i + _BLOCK])[2] for i in range(0, max(1, len(places)), _BLOCK)
+        ]
+        return np.concatenate(blocks) <= _EDGE
+
     def _look_up(self, places: Array) -> tuple[Array, Array]:
         """Return the number of the element under each place among all, and where in it."""
+        found, local, worst = self._nearest(places)
+        if np.any(worst > _EDGE):
+            self._refuse(places[int(worst.argmax())])
+        return found, local
+
+    def _nearest(self, places: Array) -> tuple[Array, Array, Array]:
+        """Return the element nearest to each place, where in it, and how far outside."""
         n_near = min(_CANDIDATES, self._tree.n)
         _, near = self._tree.query(places, k=n_near)
         near = np.asarray(near).reshape(len(places), n_near)
@@ -246,9 +284,7 @@ class Surface:
         if lost.size:
             # On a graded mesh the element under a place can have a centre far from it.
             found[lost], local[lost], worst[lost] = self._search_all(places[lost])
-        if np.any(worst > _EDGE):
-            self._refuse(places[int(worst.argmax())])
-        return found, local
+        return found, local, worst
 
     def _locate(self, numbers: Array, places: Array) -> Located:
         local, outside = np.empty((len(places), 2)), np.empty(len(places))
@@ -276,6 +312,12 @@ class Surface:
     def _refuse(self, place: Array) -> None:
         low, high = self.extent
         name = "the floor" if self.name == "floor" else repr(self.name)
+        inside = bool(((low <= place) & (place <= high)).all())
+        if inside:
+            raise InputError(
+                f"point ({place[0]:g}, {place[1]:g}) m is not on {name}: there is an opening, or "
+                "nothing yet"
+            )
         raise InputError(
             f"point ({place[0]:g}, {place[1]:g}) m is not on {name}, which "
             f"covers x {low[0]:g} to {high[0]:g} m and y {low[1]:g} to {high[1]:g} m"

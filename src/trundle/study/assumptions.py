@@ -50,7 +50,8 @@ def _points_on_beams(study: Study) -> list[FitnessWarning]:
     plan, found = study.plan, list[FitnessWarning]()
     if plan is None:
         return found
-    for name, (x, y) in study.points.items():
+    for name, spot in study.points.items():
+        x, y = spot.x, spot.y
         along_x = plan.beams_x is not None and np.abs(plan.y_lines - y).min() < _ON_BEAM
         along_y = plan.beams_y is not None and np.abs(plan.x_lines - x).min() < _ON_BEAM
         if along_x or along_y:

@@ -163,7 +163,7 @@ def _still_points(study: Study) -> Iterator[FitnessWarning]:
         return
     for name, at in study.points.items():
         for edge, (axis, position) in plan.held_edges().items():
-            if abs(at[axis] - position) < _ON_EDGE:
+            if abs((at.x, at.y)[axis] - position) < _ON_EDGE:
                 yield FitnessWarning(
                     subject=f"point {name!r}",
                     message=f"it stands on the edge {edge}, which is {plan.edges[edge]} and cannot "

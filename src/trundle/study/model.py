@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
+from jaxtyping import Float
 
 from trundle._html import html_table
+from trundle._typing import Array
 from trundle.criteria import Criterion
+from trundle.errors import InputError
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import ConstantSpeed, Entry, Route
 from trundle.signals import Averaging, Isolation
@@ -17,7 +20,8 @@ from trundle.simulate import Crossing, Interaction
 from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import as_sources
 from trundle.simulate.sources.source import Source
-from trundle.structure import FloorPlan, Structure
+from trundle.structure import FloorPlan, Spot, Structure, build_floor
+from trundle.structure.building import Building, Meshing, build_building
 from trundle.study.map_plan import MapPlan
 from trundle.vehicle import Vehicle
 
@@ -178,6 +182,10 @@ class Study:
         The meshed floor.
     plan : FloorPlan or None
         The plan that it was meshed from; None for a model that came as it is.
+    building : Building or None
+        The building that it was meshed from, if it was.
+    meshing : Meshing or None
+        How that was meshed.
     mesh_size : float
         Largest edge of an element [m].
     drives : mapping of str to Drive
@@ -192,7 +200,7 @@ class Study:
         Waves that synthetic roads contain.
     band_follows_dt : bool
         Whether the band ends where a method's time step can no longer follow.
-    points : mapping of str to (x, y)
+    points : mapping of str to Spot
         Where the response is read [m].
     isolations : mapping of str to Isolator or TransmissibilityTable
         What stands between floor and tool at some of the points.
@@ -222,6 +230,8 @@ class Study:
     duration: float | None
     floor: Structure
     plan: FloorPlan | None
+    building: Building | None
+    meshing: Meshing | None
     mesh_size: float
     drives: Mapping[str, Drive]
     sources: Mapping[str, Source]
@@ -229,7 +239,7 @@ class Study:
     roads: Mapping[str, RoadClass]
     band: RoughnessBand
     band_follows_dt: bool
-    points: Mapping[str, tuple[float, float]]
+    points: Mapping[str, Spot]
     isolations: Mapping[str, Isolation]
     methods: tuple[MethodPlan, ...]
     assessment: Assessment | None
@@ -271,6 +281,33 @@ class Study:
         if self.plan is not None:
             return self.plan.x_extent, self.plan.y_extent
         return extent_of(self.floor)
+
+    @property
+    def storeys(self) -> tuple[str | None, ...]:
+        """All surfaces by name; None for the only one."""
+        names = tuple(self.floor.surfaces)
+        return names if len(names) > 1 else (None,)
+
+    def in_plan(self, xy: Float[Array, "n 2"], on: str | None) -> Float[Array, "n 2"]:
+        """Return where in plan places of a surface are [m]."""
+        return self.floor.surface(on).frame.to_plan(np.asarray(xy, dtype=float))
+
+    def meshed(self, factor: float) -> Study:
+        """Return the study on a mesh whose sizes are times a factor.
+
+        Raises
+        ------
+        InputError
+            The floor came as a mesh.
+        """
+        size = self.mesh_size * factor
+        if self.plan is not None:
+            return replace(self, floor=build_floor(self.plan, mesh_size=size), mesh_size=size)
+        if self.building is None or self.meshing is None:
+            raise InputError(f"{self.floor.name} came as a mesh: it cannot be meshed anew")
+        meshing = self.meshing.scaled(factor)
+        floor = build_building(self.building, meshing)
+        return replace(self, floor=floor, meshing=meshing, mesh_size=size)
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:

@@ -32,6 +32,8 @@ class StudyFile:
         of them is not a second mistake.
     counts : dict of str to int
         Number of sections in each list, sound or not.
+    given : frozenset of str
+        Names of all that stands in the file, sound or not.
     """
 
     source: str
@@ -44,6 +46,7 @@ class StudyFile:
     )
     declared: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
     counts: dict[str, int] = field(default_factory=dict[str, int])
+    given: frozenset[str] = frozenset()
 
     def items(self, name: str) -> list[Any]:
         """Return the sections of a list."""

@@ -11,13 +11,14 @@ from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.signals import Isolation
 from trundle.simulate import Source
-from trundle.structure import FloorPlan, Structure
+from trundle.structure import FloorPlan, Structure, Surface
+from trundle.structure.building import Building, Meshing
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Assessment, Drive, Extent, MethodPlan, extent_of
 from trundle.study_file.document import StudyFile
 from trundle.vehicle import Vehicle
 
-__all__ = ["Draft", "covered", "is_off", "refer", "unique", "unknown"]
+__all__ = ["Draft", "covered", "is_off", "refer", "surface_at", "unique", "unknown"]
 
 _EDGE = 1e-6  # m
 
@@ -37,7 +38,11 @@ class Draft:
     plan : FloorPlan or None
         Plan of the floor.
     model : Structure or None
-        The floor itself, where it came from a file.
+        The floor itself, where it came from a file or was built of a building.
+    building : Building or None
+        What it was built of.
+    meshing : Meshing or None
+        How that was meshed.
     mesh_size : float
         Largest edge of an element [m].
     vehicles : mapping of str to Vehicle
@@ -67,6 +72,8 @@ class Draft:
     files: Mapping[str, Path]
     plan: FloorPlan | None = None
     model: Structure | None = None
+    building: Building | None = None
+    meshing: Meshing | None = None
     mesh_size: float = 1.0
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict[str, Vehicle])
     drives: Mapping[str, Drive] = field(default_factory=dict[str, Drive])
@@ -143,6 +150,43 @@ def unique(place: str, names: Iterable[str]) -> Iterator[Problem]:
                 rule="names must differ, for results are found by them",
                 remedy="rename or remove one",
             )
+
+
+def surface_at(
+    draft: Draft, place: str, on: str | None
+) -> tuple[Surface | None, Iterator[Problem]]:
+    """Return the surface of a name, and the problem of a name that there is not.
+
+    Parameters
+    ----------
+    draft : Draft
+        With a model.
+    place : str
+        Where the name stands, or should.
+    on : str or None
+        The name; None for the only one.
+    """
+    if draft.model is None:
+        return None, iter(_no_storeys(place, on) if draft.plan is not None else ())
+    surfaces = draft.model.surfaces
+    if on is None and len(surfaces) == 1:
+        return next(iter(surfaces.values())), iter(())
+    if on is not None and on in surfaces:
+        return surfaces[on], iter(())
+    problem = Problem(
+        place=place,
+        value="nothing" if on is None else repr(on),
+        rule="must name a storey with a floor, or a ramp",
+        remedy=f"there are: {', '.join(surfaces)}",
+    )
+    return None, iter([problem])
+
+
+def _no_storeys(place: str, on: str | None) -> list[Problem]:
+    if on is None:
+        return []
+    rule, remedy = "a [floor] of one storey has no other surface", "remove it"
+    return [Problem(place=place, value=repr(on), rule=rule, remedy=remedy)]
 
 
 def is_off(extent: Extent, place: tuple[float, float]) -> bool:

@@ -14,15 +14,20 @@ from trundle.units import DIMENSIONS, to_si
 
 __all__ = [
     "Acceleration",
+    "Angle",
     "AreaDensity",
+    "CrossArea",
     "DampingCoefficient",
     "Density",
     "Factor",
     "Flag",
     "Frequency",
+    "GridPlace",
     "GroupName",
     "Length",
     "Line",
+    "LineDensity",
+    "Load",
     "Mass",
     "Name",
     "NonNegativeLength",
@@ -33,9 +38,12 @@ __all__ = [
     "Rate",
     "Ratio",
     "RotaryInertia",
+    "RotationalStiffness",
+    "SecondMoment",
     "Section",
     "Speed",
     "Stiffness",
+    "StiffnessPerMetre",
     "Time",
     "Wavenumber",
     "Whole",
@@ -58,7 +66,14 @@ _LARGEST = {
     "wavenumber": 100.0,
     "mass": 1e7,
     "area density": 1e5,
+    "line density": 1e6,
     "density": 3e4,
+    "load": 1e7,
+    "stiffness per metre": 1e13,
+    "rotational stiffness": 1e14,
+    "angle": 10.0,
+    "area": 1e3,
+    "second moment": 1e4,
     "pressure": 1e13,
     "stiffness": 1e13,
     "damping coefficient": 1e11,
@@ -161,4 +176,31 @@ Ratio: TypeAlias = Annotated[
     _rule(lambda value: 0.0 <= value < 1.0, "must be at least 0 and below 1 (write 3 % or 0.03)"),
 ]
 Factor: TypeAlias = Annotated[float, _quantity("ratio"), _POSITIVE]
+Angle: TypeAlias = Annotated[float, _quantity("angle")]
+CrossArea: TypeAlias = Annotated[float, _quantity("area"), _POSITIVE]
+SecondMoment: TypeAlias = Annotated[float, _quantity("second moment"), _POSITIVE]
+LineDensity: TypeAlias = Annotated[float, _quantity("line density"), _POSITIVE]
+Load: TypeAlias = Annotated[float, _quantity("load"), _NON_NEGATIVE]
+StiffnessPerMetre: TypeAlias = Annotated[float, _quantity("stiffness per metre"), _NON_NEGATIVE]
+RotationalStiffness: TypeAlias = Annotated[float, _quantity("rotational stiffness"), _NON_NEGATIVE]
 Place: TypeAlias = tuple[Length, Length]
+
+
+def _crossing(value: Any) -> Any:
+    """Leave the name of a crossing of grid lines as it is; read a pair as lengths."""
+    if isinstance(value, str):
+        if value.count("/") != 1:
+            rule = 'must be [x, y], or where two grid lines cross, such as "A/1"'
+            raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+        return value
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        rule = 'must be two lengths [x, y], or where two grid lines cross, such as "A/1"'
+        raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+    try:
+        return tuple(to_si(one, "length") for one in value)
+    except InputError as error:
+        raise PydanticCustomError("quantity", "{rule}", {"rule": str(error)}) from None
+
+
+GridPlace: TypeAlias = Annotated[Any, BeforeValidator(_crossing)]
+"""A place in plan: ``[x, y]``, or the name of two grid lines that cross, ``"A/1"``."""

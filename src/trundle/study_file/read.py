@@ -64,6 +64,7 @@ def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
         lists=lists,
         declared=_declared(data),
         counts={k: len(data[k]) for k in _LISTS if isinstance(data.get(k), list)},
+        given=frozenset(data),
     )
     return study, problems
 
@@ -294,6 +295,8 @@ def _fields_within(kind: Any, data: Mapping[str, Any], location: list[Any]) -> t
     names = [str(part) for part in location if not isinstance(part, int)]
     sections = [m for m in _members(kind) if names[0] in m.model_fields]
     for name in names:
+        if not any(name in m.model_fields for m in sections):
+            continue  # the name that a table of tables has in this file
         inner = (m.model_fields[name].annotation for m in sections if name in m.model_fields)
         sections = [section for annotation in inner for section in _sections_in(annotation)]
     return tuple(dict.fromkeys(key for section in sections for key in section.model_fields))

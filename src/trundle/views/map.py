@@ -125,8 +125,7 @@ def map_payload(result: StudyResult) -> dict[str, Any]:
             for name, d in result.study.drives.items()
         ],
         "points": [
-            {"name": name, "x": place[0], "y": place[1]}
-            for name, place in result.study.points.items()
+            {"name": name, "x": spot.x, "y": spot.y} for name, spot in result.study.points.items()
         ],
     }
 

@@ -94,7 +94,8 @@ def plan_figure(study: Study) -> Figure:
             color=colour,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
         )
-    for name, place in study.points.items():
+    for name, spot in study.points.items():
+        place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         axes.plot(*place, marker="X", markersize=9, color="black", linestyle="none")
         axes.annotate(name, place, xytext=(8, 6), textcoords="offset points", weight="bold")
     if study.plan is not None:

@@ -209,8 +209,8 @@ def _image(
         line = study.drives[name].route.points.T
         panel.plot(*line, color="white", linewidth=2.4)
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
-    for place in study.points.values():
-        panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")
+    for spot in study.points.values():
+        panel.plot(spot.x, spot.y, marker="X", markersize=6, color="black", markeredgecolor="white")
     if study.plan is not None and study.plan.column:
         x, y = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
         panel.plot(x.ravel(), y.ravel(), "s", markersize=2, color=COLOURS[7])

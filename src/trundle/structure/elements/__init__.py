@@ -8,6 +8,7 @@ from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Elements, Standable
 from trundle.structure.elements.quad_shell import ShellGroup
+from trundle.structure.elements.released_beam import ReleasedBeams
 from trundle.structure.elements.spring import SpringGroup
 from trundle.structure.elements.standing import ContactShape, Hat, Hermite, Located, Weights
 from trundle.structure.elements.triangle_shell import TriangleGroup
@@ -21,6 +22,7 @@ __all__ = [
     "Hermite",
     "Located",
     "PointMasses",
+    "ReleasedBeams",
     "ShellGroup",
     "SpringGroup",
     "Standable",

@@ -29,7 +29,7 @@ from trundle.structure.elements.standing import (
 from trundle.structure.frames import beam_frames, rotate_blocks
 from trundle.structure.sections import BeamSection
 
-__all__ = ["BeamGroup", "beam_mass", "beam_stiffness"]
+__all__ = ["BeamGroup", "beam_mass", "beam_stiffness", "with_offset"]
 
 _UP = (0.0, 0.0, 1.0)
 _GAUSS_4 = np.polynomial.legendre.leggauss(4)
@@ -74,7 +74,7 @@ def beam_stiffness(
         phi = _shear_parameter(rigidity, material.shear_modulus * shear_area, lengths)
         block = _bending_stiffness(rigidity, phi, lengths)
         local[np.ix_(np.arange(len(ends)), plane, plane)] += block * np.outer(signs, signs)
-    return _with_offset(rotate_blocks(local, frames), offset)
+    return with_offset(rotate_blocks(local, frames), offset, lengths, frames[:, 0])
 
 
 def beam_mass(
@@ -103,7 +103,7 @@ def beam_mass(
         phi = _shear_parameter(rigidity, section.material.shear_modulus * shear_area, lengths)
         block = _bending_mass(density * section.area, density * inertia, phi, lengths)
         local[np.ix_(np.arange(len(ends)), plane, plane)] += block * np.outer(signs, signs)
-    return _with_offset(rotate_blocks(local, frames), offset)
+    return with_offset(rotate_blocks(local, frames), offset, lengths, frames[:, 0])
 
 
 def _planes(section: BeamSection) -> tuple[tuple[Array, Array, float, float], ...]:
@@ -167,15 +167,47 @@ def _shapes(x: float, phi: Array, length: Array) -> tuple[Array, Array]:
     return np.stack(deflection, axis=1), np.stack(rotation, axis=1)
 
 
-def _with_offset(matrices: Array, offset: Array) -> Array:
-    """Move from centroid to node dofs: u_centroid = u_node + rotation x offset."""
+def with_offset(
+    matrices: Float[Array, "elements 12 12"],
+    offset: Float[Array, " 3"],
+    lengths: Float[Array, " elements"],
+    along: Float[Array, "elements 3"],
+) -> Float[Array, "elements 12 12"]:
+    """Move matrices from a member's centroid to its nodes, which lie off it.
+
+    Parameters
+    ----------
+    matrices : ndarray of float, shape (n_elements, 12, 12)
+        About the centroid, in global axes.
+    offset : ndarray of float, shape (3,)
+        From nodes to centroid [m].
+    lengths : ndarray of float, shape (n_elements,)
+        Lengths [m].
+    along : ndarray of float, shape (n_elements, 3)
+        Unit vectors along the members.
+
+    Notes
+    -----
+    The centroid moves as a rigid arm does, ``u + theta x o``. Its section turns with the node and,
+    where the member is twisted, further: a web under a slab that does not move sideways goes aside
+    by ``o`` times the twist, and its section must turn with that line or be sheared. With the
+    rate of twist ``tau = a . (theta_2 - theta_1) / L`` about the axis a, the angle that leaves
+    twisting without shear is ``a x (tau a x o) = -tau o_across``. Sections that turned with the
+    nodes alone would make torsion stiffer by ``G A_s o^2``, wherever nodes do not turn in the
+    plane: a slab of elements with rotations of their own made a T several times too stiff.
+    """
     ex, ey, ez = (float(component) for component in offset)
     link = np.eye(6)
     link[0, 4], link[0, 5] = ez, -ey
     link[1, 3], link[1, 5] = -ez, ex
     link[2, 3], link[2, 4] = ey, -ex
-    transform = np.kron(np.eye(2), link)
-    return transform.T @ matrices @ transform
+    transform = np.broadcast_to(np.kron(np.eye(2), link), matrices.shape).copy()
+    across = offset - (along @ offset)[:, None] * along
+    twisted = -across[:, :, None] * along[:, None, :] / lengths[:, None, None]
+    for turned in (slice(3, 6), slice(9, 12)):
+        transform[:, turned, 3:6] -= twisted
+        transform[:, turned, 9:12] += twisted
+    return np.swapaxes(transform, 1, 2) @ matrices @ transform
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -14,6 +14,7 @@ from pkgutil import iter_modules
 
 from trundle.study_file.kinds import SectionKind
 from trundle.study_file.sections import (
+    building,
     criteria,
     floor,
     general,
@@ -28,7 +29,7 @@ from trundle.study_file.sections import (
 
 __all__ = ["FILES", "KINDS"]
 
-_FIRST = (general, floor, vehicle, route, road, method, criteria, point, map, published)
+_FIRST = (general, floor, building, vehicle, route, road, method, criteria, point, map, published)
 _OTHERS = tuple(
     import_module(f"{__name__}.{found.name}")
     for found in iter_modules(__path__)
@@ -39,6 +40,7 @@ FILES = (*_FIRST, *_OTHERS)
 
 KINDS: tuple[SectionKind, ...] = (
     floor.FLOOR,
+    building.BUILDING,
     road.ROUGHNESS,
     criteria.CRITERIA,
     map.MAP,

@@ -109,12 +109,15 @@ FloorSection: TypeAlias = Annotated[
 ]
 
 
-FLOOR = SectionKind(name="floor", schema=FloorSection, form="table", required=True)
+FLOOR = SectionKind(name="floor", schema=FloorSection, form="table")
 
 
 def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     """Return the draft with the plan of the floor."""
     section = draft.file.tables.get("floor")
+    floors = [name for name in ("floor", "building") if name in draft.file.given]
+    if len(floors) != 1:
+        return draft, [_one_of_both(len(floors))]
     if section is None:
         return draft, []
     if isinstance(section, ModelFloorSection):
@@ -128,6 +131,17 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     if plan is not None:
         found += _mesh_problems(plan, section.mesh_size)
     return replace(draft, plan=plan, mesh_size=float(section.mesh_size)), found
+
+
+def _one_of_both(n: int) -> Problem:
+    return Problem(
+        place="floor",
+        value="[floor] and [building]" if n else "nothing",
+        rule="a study needs a [floor] or a [building], and only one of them",
+        remedy="remove one"
+        if n
+        else "add [floor] for a storey of bays, or [building] for any other",
+    )
 
 
 def _with_model(draft: Draft, section: ModelFloorSection) -> tuple[Draft, list[Problem]]:

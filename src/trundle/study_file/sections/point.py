@@ -11,8 +11,9 @@ from pydantic import Field
 
 from trundle.errors import InputError, Problem
 from trundle.signals import Isolation, Isolator, TransmissibilityTable
+from trundle.structure import Spot, Surface
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, covered, is_off, unique
+from trundle.study_file.draft import Draft, covered, is_off, surface_at, unique
 from trundle.study_file.fields import (
     Factor,
     Frequency,
@@ -39,6 +40,7 @@ class PointSection(Section):
 
     name: Name
     at: Place
+    on: Name | None = None
     isolator: IsolatorSection | None = None
 
 
@@ -63,15 +65,26 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
 def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the section."""
     return {
-        "points": {p.name: p.at for p in draft.file.items("point")},
+        "points": {p.name: _spot(draft, p) for p in draft.file.items("point")},
         "isolations": draft.isolations,
     }
+
+
+def _spot(draft: Draft, section: PointSection) -> Spot:
+    """Return where a point is, in its surface."""
+    surface, _ = surface_at(draft, "", section.on)
+    if surface is None:
+        return Spot(*section.at)
+    x, y = surface.frame.from_plan(np.array([section.at]))[0]
+    return Spot(float(x), float(y), section.on)
 
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give points off the floor, and points of one name."""
     extent = draft.extent
     for i, section in draft.file.lists.get("point", []):
+        surface, mistakes = surface_at(draft, f"point[{i + 1}].on", section.on)
+        yield from mistakes
         if extent is not None and is_off(extent, section.at):
             yield Problem(
                 place=f"point[{i + 1}].at",
@@ -79,7 +92,18 @@ def problems(draft: Draft) -> Iterator[Problem]:
                 rule=f"a point must lie on the floor; {covered(extent)}",
                 remedy="move it onto the floor",
             )
+        elif surface is not None and not _is_on(surface, section.at):
+            yield Problem(
+                place=f"point[{i + 1}].at",
+                value=f"({section.at[0]:g}, {section.at[1]:g}) m",
+                rule=f"a point must lie on a slab, and {surface.name!r} has none there",
+                remedy="move it off the opening, or name another storey: on = ...",
+            )
     yield from unique("point", [s.name for s in draft.file.items("point")])
+
+
+def _is_on(surface: Surface, at: tuple[float, float]) -> bool:
+    return bool(surface.holds(surface.frame.from_plan(np.array([at])))[0])
 
 
 def isolation_of(section: IsolatorSection) -> Isolation:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import Annotated, Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from trundle.structure import (
 from trundle.study.model import Case, Drive, Extent, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.document import StudyFile
-from trundle.study_file.draft import Draft, covered, is_off, refer, unique, unknown
+from trundle.study_file.draft import Draft, covered, is_off, refer, surface_at, unique, unknown
 from trundle.study_file.fields import (
     GroupName,
     Name,
@@ -31,6 +32,7 @@ from trundle.study_file.kinds import SectionKind
 __all__ = ["ROUTE", "TRAFFIC", "build", "fields", "problems"]
 
 _EDGE = 1e-6  # m
+_LOOKED_AT = 0.1  # m along a route
 
 
 class RouteSection(Section):
@@ -39,6 +41,7 @@ class RouteSection(Section):
     name: GroupName
     vehicle: Name
     path: Annotated[tuple[Place, ...], Field(min_length=2)]
+    on: Name | None = None
     speed: Speed
     run_in: NonNegativeLength | None = None
 
@@ -65,10 +68,14 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
             if section.vehicle not in known:
                 found.append(unknown(f"{place}.vehicle", section.vehicle, sorted(known), "vehicle"))
             continue
+        surface, _ = surface_at(draft, f"{place}.on", section.on)
         path = np.array(section.path)
+        path = path if surface is None else surface.frame.from_plan(path)
         route, mistakes = attempted(
             f"{place}.path",
-            lambda s=section, p=path: Route(points=p, law=ConstantSpeed(s.speed), name=s.name),
+            lambda s=section, p=path: Route(
+                points=p, law=ConstantSpeed(s.speed), name=s.name, on=s.on
+            ),
         )
         found += mistakes
         if route is not None:
@@ -89,6 +96,7 @@ def fields(draft: Draft) -> dict[str, Any]:
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give routes off the floor, along an edge or too short, and traffic of unknown routes."""
     yield from _traffic(draft)
+    yield from _off_slabs(draft)
     if draft.extent is not None:
         yield from _off_the_floor(draft, draft.extent)
     if draft.plan is not None:
@@ -123,6 +131,29 @@ def _off_the_floor(draft: Draft, extent: Extent) -> Iterator[Problem]:
                     value=f"({place[0]:g}, {place[1]:g}) m",
                     rule=f"a route must stay on the floor; {covered(extent)}",
                     remedy="start and end it at the floor's edges; 'trundle check' draws the plan",
+                )
+
+
+def _off_slabs(draft: Draft) -> Iterator[Problem]:
+    """Give routes on no storey, and routes that leave its slabs: over an opening, past an edge."""
+    for i, section in draft.file.lists.get("route", []):
+        surface, mistakes = surface_at(draft, f"route[{i + 1}].on", section.on)
+        yield from mistakes
+        if surface is None or draft.extent is None:
+            continue
+        if any(is_off(draft.extent, place) for place in section.path):
+            continue  # told already
+        for j, (start, end) in enumerate(pairwise(np.array(section.path)), start=1):
+            n = max(2, int(np.ceil(np.hypot(*(end - start)) / _LOOKED_AT)) + 1)
+            places = start + np.linspace(0.0, 1.0, n)[:, None] * (end - start)
+            off = places[~surface.holds(surface.frame.from_plan(places))]
+            if len(off):
+                (a, b), (c, d) = off[0], off[-1]
+                yield Problem(
+                    place=f"route[{i + 1}].path[{j}]",
+                    value=f"a way over no slab from ({a:.4g}, {b:.4g}) to ({c:.4g}, {d:.4g}) m",
+                    rule=f"a route must stay on the slabs of {surface.name!r}",
+                    remedy="lead it round openings and walls; 'trundle check' draws the plan",
                 )
 
 

@@ -1,0 +1,149 @@
+"""Hold a building: at the feet of columns and walls, at supports, in planes of symmetry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+
+import numpy as np
+from jaxtyping import Bool, Float
+
+from trundle._typing import Array
+from trundle.structure.building.nodes import Nodes
+from trundle.structure.building.parts import Base, Building
+from trundle.structure.building.sheets import passes
+from trundle.structure.elements import GROUND, PointMasses, SpringGroup
+from trundle.structure.links import RigidLinks
+from trundle.structure.mesh.polygons import covers
+from trundle.structure.mesh.sheet_mesh import SheetMesh
+from trundle.structure.model import MirrorPlane
+
+__all__ = ["fixed_dofs", "heads", "masses", "mirrors", "springs"]
+
+_ON_PLANE = 1e-3  # m
+_PINNED = np.array([True, True, True, False, False, False])
+
+
+def fixed_dofs(
+    building: Building, mesh: SheetMesh, nodes: Nodes, xyz: Float[Array, "nodes 3"]
+) -> Bool[Array, "nodes 6"]:
+    """Return which dofs are held."""
+    fixed = np.zeros((len(xyz), 6), dtype=bool)
+    for base, some, _ in _feet(building, mesh, nodes):
+        if base == "fixed":
+            fixed[some] = True
+        elif base == "pinned":
+            fixed[some] |= _PINNED
+    for support in building.supports:
+        fixed[_on_line(building, mesh, support.on, support.along)] |= np.array(support.held)
+    for plane in building.symmetry:
+        on = np.abs(xyz[:, plane.axis] - plane.position) < _ON_PLANE
+        fixed[on] |= _mirrored(plane.axis)
+    return fixed
+
+
+def _mirrored(axis: int) -> Array:
+    """Return what a plane of symmetry holds: motion across it, and rotation out of it."""
+    held = np.zeros(6, dtype=bool)
+    held[[axis, 3 + (1 - axis), 5]] = True
+    return held
+
+
+def _feet(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[tuple[Base, Array, Array]]:
+    """Give what ends of columns and walls stand on, their nodes, and each one's length [m]."""
+    for column in building.columns:
+        ends: tuple[tuple[Base | None, str], ...] = (
+            (column.base, column.bottom),
+            (column.cap, column.top),
+        )
+        for base, storey in ends:
+            if base is not None:
+                node = nodes.at(storey, column.at, f"column {column.name!r}")
+                yield base, np.array([node]), np.ones(1)
+    number = {name: i for i, name in enumerate(building.floors)}
+    for wall in building.walls:
+        if wall.base is not None:
+            some = mesh.along(number[wall.bottom], wall.along)
+            yield wall.base, some, _tributary(mesh.nodes[some])
+
+
+def _on_line(building: Building, mesh: SheetMesh, on: str, along: Array) -> Array:
+    """Return the nodes of a sheet on a line or at a place."""
+    sheet = list(building.floors).index(on)
+    if len(along) == 1:
+        found = mesh.at(sheet, along[0])
+        return np.array([] if found is None else [found], dtype=np.intp)
+    pairs = pairwise(along)
+    return np.concatenate([mesh.along(sheet, np.stack(pair)) for pair in pairs])
+
+
+def _tributary(places: Array) -> Array:
+    """Return the length of a line that belongs to each of its nodes [m]."""
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    return 0.5 * (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]]))
+
+
+def _pieces(building: Building, mesh: SheetMesh, on: str, along: Array) -> tuple[Array, Array]:
+    """Return the nodes of a line or a place, and the length that belongs to each [m], or 1."""
+    if len(along) == 1:
+        some = _on_line(building, mesh, on, along)
+        return some, np.ones(len(some))
+    sheet = list(building.floors).index(on)
+    rows = [mesh.along(sheet, np.stack(pair)) for pair in pairwise(along)]
+    lengths = np.concatenate([_tributary(mesh.nodes[row]) for row in rows])
+    some, place = np.unique(np.concatenate(rows), return_inverse=True)
+    return some, np.bincount(place, weights=lengths)
+
+
+def springs(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[SpringGroup]:
+    """Give springs to the ground: under columns and walls, and at supports."""
+    found: list[tuple[str, Array, Array, Array]] = []
+    for base, some, length in _feet(building, mesh, nodes):
+        if not isinstance(base, str):
+            found.append(("ground", some, length, np.array(base)))
+    for support in building.supports:
+        if any(support.springs):
+            some, length = _pieces(building, mesh, support.on, support.along)
+            found.append((support.name, some, length, np.array(support.springs)))
+    for name, some, length, stiffness in found:
+        for share in np.unique(np.round(length, 9)):
+            at = some[np.round(length, 9) == share]
+            ends = np.stack([at, np.full(len(at), GROUND)], axis=1)
+            yield SpringGroup(elements=ends, stiffness=share * stiffness, name=name)
+
+
+def masses(building: Building, mesh: SheetMesh) -> Iterator[PointMasses]:
+    """Give point masses, those of lines by the length that belongs to each node."""
+    for mass in building.masses:
+        some, length = _pieces(building, mesh, mass.on, mass.along)
+        for share in np.unique(np.round(length, 9)):
+            at = some[np.round(length, 9) == share]
+            yield PointMasses(nodes=at, mass=float(share) * mass.mass, name=mass.name)
+
+
+def heads(building: Building, mesh: SheetMesh, nodes: Nodes) -> tuple[RigidLinks, ...]:
+    """Return which nodes of slabs lie in the cross-section of a column, and follow its axis."""
+    leads, behind = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)]
+    storeys = {s.name: i for i, s in enumerate(building.storeys)}
+    for column in building.columns:
+        if column.head == "point":
+            continue
+        for storey in building.between(column.bottom, column.top):
+            if not passes(building, column, storey.name):
+                continue
+            head = nodes.at(storey.name, column.at, f"column {column.name!r}")
+            some = mesh.hard[storeys[storey.name]]
+            near = np.abs(mesh.nodes[some, :2] - column.at).max(axis=1)
+            some = some[near <= np.hypot(column.profile.depth, column.profile.width)]
+            follow = some[covers(column.footprint, (), mesh.nodes[some, :2])]
+            follow = follow[follow != head]
+            leads.append(np.full(len(follow), head))
+            behind.append(follow)
+    if not sum(map(len, behind)):
+        return ()
+    return (RigidLinks(leads=np.concatenate(leads), follows=np.concatenate(behind)),)
+
+
+def mirrors(building: Building) -> tuple[MirrorPlane, ...]:
+    """Return the planes of symmetry."""
+    return tuple(MirrorPlane(axis=p.axis, position=p.position) for p in building.symmetry)

@@ -1,0 +1,71 @@
+"""Gather the nodes of a building: those of its sheets, and those between storeys."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from trundle._typing import Array
+from trundle.errors import InputError
+from trundle.structure.building.parts import Building
+from trundle.structure.mesh.sheet_mesh import SheetMesh
+
+__all__ = ["Nodes"]
+
+_PER_METRE = 1000  # nodes that columns and walls share between storeys stand at one place
+
+
+class Nodes:
+    """Gathers nodes; those that members make between storeys are made one where they coincide."""
+
+    def __init__(self, building: Building, mesh: SheetMesh) -> None:
+        self._mesh = mesh
+        self._number = {name: i for i, name in enumerate(building.floors)}
+        self._places = [mesh.nodes]
+        self._n = len(mesh.nodes)
+
+    def at(self, on: str, place: Float[Array, " 2"], what: str) -> int:
+        """Return the node of a storey or ramp at a place.
+
+        Raises
+        ------
+        InputError
+            There is none: nothing is there.
+        """
+        found = self._mesh.at(self._number[on], place)
+        if found is None:
+            raise InputError(
+                f"{what} meets nothing on {on!r} at ({place[0]:g}, {place[1]:g}) m: no slab and no "
+                "beam is there"
+            )
+        return found
+
+    def rows_between(
+        self, low: Int[Array, " n"], high: Int[Array, " n"], size: float, fewest: int
+    ) -> Int[Array, "rows n"]:
+        """Return rows of nodes between two lines, evenly spaced and no further apart than a size.
+
+        Rows between the same levels stand at the same heights, whatever asks for them.
+        """
+        start, end = self._mesh.nodes[low], self._mesh.nodes[high]
+        height = float(np.abs(end - start)[:, 2].max())
+        n = max(fewest, int(np.ceil(height / size - 1e-6)))
+        shares = np.arange(1, n) / n
+        places = start + shares[:, None, None] * (end - start)
+        inner = self._n + np.arange((n - 1) * len(low)).reshape(n - 1, len(low))
+        self._places.append(places.reshape(-1, 3))
+        self._n += inner.size
+        return np.vstack([low, inner, high])
+
+    def merged(self) -> tuple[Float[Array, "nodes 3"], Int[Array, " made"]]:
+        """Return the places of all nodes [m], and the number of each as it was given out."""
+        places = np.concatenate(self._places)
+        keys = np.round(places * _PER_METRE).astype(np.int64)
+        n = len(self._mesh.nodes)
+        _, first, same = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+        first = first[same.ravel()]
+        first[:n] = np.arange(n)  # those of sheets are apart already
+        kept = np.flatnonzero(first == np.arange(len(first)))
+        number = np.full(len(first), -1, dtype=np.intp)
+        number[kept] = np.arange(len(kept))
+        return places[kept], number[first]

@@ -1,0 +1,129 @@
+"""Mesh sheets: conforming to their lines and points and to each other, mostly by quadrilaterals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trundle._checks import positive
+from trundle._typing import Array
+from trundle.errors import InputError
+from trundle.structure.mesh.fill import Filling, filled
+from trundle.structure.mesh.planar import SNAP, PlaneGraph, away_from, cut, on_segment
+from trundle.structure.mesh.settle import settled
+from trundle.structure.mesh.sheet import Refinement, Sheet, Tie
+from trundle.structure.mesh.sheet_mesh import SheetMesh
+
+__all__ = ["mesh_sheets"]
+
+_GROW = 0.5  # of the distance from a refinement, by which elements may be larger
+
+
+def mesh_sheets(
+    sheets: Sequence[Sheet],
+    *,
+    size: float,
+    refinements: Sequence[Refinement] = (),
+    ties: Sequence[Tie] = (),
+    only_triangles: bool = False,
+) -> SheetMesh:
+    """Mesh sheets with elements no longer than a size.
+
+    Parameters
+    ----------
+    sheets : sequence of Sheet
+        What is meshed.
+    size : float
+        Largest element edge [m].
+    refinements : sequence of Refinement
+        Where elements are smaller.
+    ties : sequence of Tie
+        Lines along which two sheets are divided alike; nodes at one place are one node.
+    only_triangles : bool
+        Cut every quadrilateral in two.
+
+    Raises
+    ------
+    InputError
+        A sheet without a line to mesh.
+    """
+    size = positive("mesh size", size)
+    graphs = _cut_alike(sheets, ties)
+    sizes = [_size_of(sheet, size, refinements) for sheet in sheets]
+    if not sum(len(graph.edges) for graph in graphs):
+        raise InputError(f"nothing to mesh in {', '.join(sheet.name for sheet in sheets)}")
+    edges = settled(graphs, sizes, ties)
+    filling = filled(edges, sizes)
+    if only_triangles:
+        filling = _halved(filling)
+    return _merged(sheets, filling, [edges.hard(i) for i in range(len(graphs))])
+
+
+def _cut_alike(sheets: Sequence[Sheet], ties: Sequence[Tie]) -> list[PlaneGraph]:
+    """Cut all sheets, those that are tied at each other's vertices too."""
+    none = np.zeros((0, 2))
+    graphs = [cut(sheet, none) for sheet in sheets]
+    more: dict[int, list[Array]] = {}
+    for tie in ties:
+        for here, there in (tie.sheets, tie.sheets[::-1]):
+            points = graphs[there].points
+            found = points[on_segment(points, tie.line)] if len(points) else points
+            more.setdefault(here, []).append(found)
+    for i, places in more.items():
+        graphs[i] = cut(sheets[i], np.concatenate(places))
+    return graphs
+
+
+def _size_of(
+    sheet: Sheet, size: float, refinements: Sequence[Refinement]
+) -> Callable[[Array], Array]:
+    near = [r for r in refinements if r.sheet in (None, sheet.name) and r.size < size]
+
+    def at(places: Array) -> Array:
+        """Return the largest element edge at places [m]."""
+        out = np.full(len(places), size)
+        for one in near:
+            line = one.line if len(one.line) > 1 else np.repeat(one.line, 2, axis=0)
+            away, _ = away_from(np.stack([line[:-1], line[1:]], axis=1), places)
+            out = np.minimum(out, one.size + _GROW * np.maximum(away - one.reach, 0.0))
+        return out
+
+    return at
+
+
+def _halved(filling: Filling) -> Filling:
+    """Cut each quadrilateral along its shorter diagonal."""
+    corners = filling.xy[filling.quads]
+    first = np.linalg.norm(corners[:, 2] - corners[:, 0], axis=1)
+    second = np.linalg.norm(corners[:, 3] - corners[:, 1], axis=1)
+    other = (second < first - 1e-9)[:, None]
+    quads = np.where(other, np.roll(filling.quads, -1, axis=1), filling.quads)
+    halves = [quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]
+    owners = [filling.triangle_owner, filling.quad_owner, filling.quad_owner]
+    return replace(
+        filling,
+        quads=quads[:0],
+        quad_owner=filling.quad_owner[:0],
+        triangles=np.concatenate([filling.triangles, *halves]),
+        triangle_owner=np.concatenate(owners),
+    )
+
+
+def _merged(sheets: Sequence[Sheet], filling: Filling, hard: Sequence[Array]) -> SheetMesh:
+    """Put nodes into space; those of two sheets at one place are one."""
+    planes = np.array([sheet.plane for sheet in sheets])[filling.sheet]
+    z = planes[:, 0] + np.einsum("ij,ij->i", planes[:, 1:], filling.xy)
+    nodes = np.column_stack([filling.xy, z])
+    keys = np.round(nodes / (2.0 * SNAP)).astype(np.int64)
+    _, first, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    number = number.ravel()
+    return SheetMesh(
+        nodes=nodes[first],
+        quads=number[filling.quads],
+        triangles=number[filling.triangles],
+        quad_owner=filling.quad_owner,
+        triangle_owner=filling.triangle_owner,
+        hard=tuple(np.unique(number[some]) for some in hard),
+    )

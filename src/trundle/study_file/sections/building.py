@@ -1,0 +1,329 @@
+"""The building: storeys, slabs, beams, columns, walls, ramps and what holds them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from trundle.errors import InputError, Problem
+from trundle.structure import Floor
+from trundle.structure.building import Building, Meshing, build_building, building_problems
+from trundle.structure.mesh import Refinement
+from trundle.study_file.building_makes import PlateSection, ProfileSection, materials_of
+from trundle.study_file.building_parts import Origins, parts_of
+from trundle.study_file.draft import Draft
+from trundle.study_file.fields import (
+    Angle,
+    Density,
+    Flag,
+    GridPlace,
+    Length,
+    Line,
+    LineDensity,
+    Mass,
+    Name,
+    Number,
+    Place,
+    PositiveLength,
+    Pressure,
+    RotationalStiffness,
+    Section,
+    Stiffness,
+    StiffnessPerMetre,
+)
+from trundle.study_file.kinds import SectionKind
+
+__all__ = ["BUILDING", "build", "fields"]
+
+_MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
+
+Corners = Annotated[tuple[GridPlace, ...], Field(min_length=3)]
+Places = Annotated[tuple[GridPlace, ...], Field(min_length=1)]
+Path = Annotated[tuple[GridPlace, ...], Field(min_length=2)]
+Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
+
+
+class MaterialSection(Section):
+    """An isotropic material, with its dynamic modulus."""
+
+    elastic_modulus: Pressure
+    poisson_ratio: Annotated[Number, Field(ge=0.0, lt=0.5)] = 0.2
+    density: Density
+
+
+class StoreySection(Section):
+    """A level: the height of the mid-plane of its slabs."""
+
+    name: Name
+    level: Length
+
+
+class GridSection(Section):
+    """Grid lines by name: at an x, at a y, or through two places."""
+
+    x: dict[Name, Length] = Field(default_factory=dict)
+    y: dict[Name, Length] = Field(default_factory=dict)
+    lines: dict[Name, tuple[Place, Place]] = Field(default_factory=dict)
+
+
+class SlabSection(Section):
+    """An area of slab, with openings."""
+
+    on: Name
+    plate: Name
+    outline: Corners
+    openings: tuple[Corners, ...] = ()
+    panel: Flag = False
+
+
+class BeamSection(Section):
+    """A beam along a line, below the slab or in its plane."""
+
+    on: Name
+    section: Name
+    along: Path
+    below: Flag = True
+    hinged: Literal["none", "start", "end", "both"] = "none"
+
+
+class SpringsSection(Section):
+    """Six springs to the ground."""
+
+    ux: Stiffness = 0.0
+    uy: Stiffness = 0.0
+    uz: Stiffness = 0.0
+    rx: RotationalStiffness = 0.0
+    ry: RotationalStiffness = 0.0
+    rz: RotationalStiffness = 0.0
+
+
+class LineSpringsSection(Section):
+    """Three springs to the ground on every metre of a line."""
+
+    ux: StiffnessPerMetre = 0.0
+    uy: StiffnessPerMetre = 0.0
+    uz: StiffnessPerMetre = 0.0
+
+
+class ColumnSection(Section):
+    """A column at one place or several, from storey to storey."""
+
+    section: Name
+    at: Places | Literal["grid"]
+    from_: Annotated[Name, Field(alias="from")]
+    to: Name
+    angle: Angle = 0.0
+    base: Literal["fixed", "pinned"] | SpringsSection | None = None
+    cap: Literal["fixed", "pinned"] | SpringsSection | None = None
+    head: Literal["rigid", "point"] = "rigid"
+
+
+class WallSection(Section):
+    """A wall along a line, from storey to storey."""
+
+    plate: Name
+    along: Path
+    from_: Annotated[Name, Field(alias="from")]
+    to: Name
+    base: Literal["fixed", "pinned"] | LineSpringsSection | None = None
+
+
+class BraceSection(Section):
+    """A member between two places, on the same storey or on two."""
+
+    section: Name
+    start: GridPlace
+    end: GridPlace
+    on: tuple[Name, Name]
+    hinged: Flag = True
+
+
+class RampSection(Section):
+    """A slab that rises from its lower edge, two corners, to its upper one, the other two."""
+
+    name: Name
+    plate: Name
+    outline: Annotated[tuple[GridPlace, ...], Field(min_length=4, max_length=4)]
+    from_: Annotated[Name, Field(alias="from")]
+    to: Name
+
+
+class SupportSection(Section):
+    """What holds a line or places of a floor: any of six dofs, or springs."""
+
+    on: Name
+    along: Path | None = None
+    at: Places | None = None
+    hold: Literal["roller", "pinned", "fixed"] | tuple[Dof, ...] = ()
+    springs: SpringsSection | LineSpringsSection | None = None
+
+
+class MassSection(Section):
+    """Mass at places, or along a line."""
+
+    on: Name
+    along: Path | None = None
+    at: Places | None = None
+    mass: Mass | None = None
+    mass_per_metre: LineDensity | None = None
+
+
+class SymmetrySection(Section):
+    """A vertical plane at which the model ends."""
+
+    axis: Literal["x", "y"]
+    at: Length
+
+
+class RefineSection(Section):
+    """Smaller elements along a line, or round places."""
+
+    on: Name | None = None
+    along: Path | None = None
+    at: Places | None = None
+    size: PositiveLength
+    reach: PositiveLength = 1.0
+
+
+class BuildingSection(Section):
+    """A building of storeys."""
+
+    name: Line = "building"
+    mesh_size: PositiveLength
+    elements: Literal["quadrilaterals", "triangles"] = "quadrilaterals"
+    size_at_routes: PositiveLength | None = None
+    size_at_points: PositiveLength | None = None
+    nodes_at_points: Flag = False
+    edges_along_routes: Flag = False
+    north: Angle | None = None
+    materials: dict[Name, MaterialSection] = Field(default_factory=dict)
+    sections: dict[Name, ProfileSection] = Field(default_factory=dict)
+    plates: dict[Name, PlateSection] = Field(default_factory=dict)
+    grid: GridSection = GridSection()
+    storey: Annotated[tuple[StoreySection, ...], Field(min_length=1)]
+    slab: tuple[SlabSection, ...] = ()
+    beam: tuple[BeamSection, ...] = ()
+    column: tuple[ColumnSection, ...] = ()
+    wall: tuple[WallSection, ...] = ()
+    brace: tuple[BraceSection, ...] = ()
+    ramp: tuple[RampSection, ...] = ()
+    support: tuple[SupportSection, ...] = ()
+    mass: tuple[MassSection, ...] = ()
+    symmetry: tuple[SymmetrySection, ...] = ()
+    refine: tuple[RefineSection, ...] = ()
+
+
+BUILDING = SectionKind(name="building", schema=BuildingSection, form="table")
+
+
+def build(draft: Draft) -> tuple[Draft, list[Problem]]:
+    """Return the draft with the building, and the model that it is meshed to."""
+    section = draft.file.tables.get("building")
+    if section is None:
+        return draft, []
+    building, origins, found = parts_of(section, materials_of(section))
+    if building is None:
+        return draft, found
+    found = [_placed(problem, origins) for problem in building_problems(building)]
+    found += _too_fine(section, building)
+    if found:
+        return draft, found
+    meshing = _meshing(draft, section, building)
+    floor, found = _floor(building, meshing)
+    size = float(section.mesh_size)
+    draft = replace(draft, building=building, meshing=meshing, model=floor, mesh_size=size)
+    return draft, found
+
+
+def _floor(building: Building, meshing: Meshing) -> tuple[Floor | None, list[Problem]]:
+    """Return the model of a building, or why there can be none."""
+    try:
+        floor = build_building(building, meshing)
+    except InputError as error:
+        problem = Problem(
+            place="building",
+            value=building.name,
+            rule=str(error).removeprefix(f"{building.name}: "),
+            remedy="docs/building.md says what is joined to what, and what holds it",
+        )
+        return None, [problem]
+    return (floor, []) if floor.decks else (None, [_nothing_to_stand_on()])
+
+
+def _nothing_to_stand_on() -> Problem:
+    return Problem(
+        place="building",
+        value="no slab, ramp or level beam",
+        rule="vehicles and points stand on slabs, ramps or beams",
+        remedy="add [[building.slab]]",
+    )
+
+
+def fields(draft: Draft) -> dict[str, Any]:
+    """Return what a study takes from the section."""
+    return {"building": draft.building, "meshing": draft.meshing}
+
+
+def _placed(problem: Problem, origins: Origins) -> Problem:
+    """Return a problem with its place as the file has it."""
+    match = re.match(r"(\w+)\[(\d+)\](.*)", problem.place)
+    if match is None:
+        return replace(problem, place=f"building.{problem.place}")
+    kind, number, key = match[1], int(match[2]), match[3]
+    entry, place = origins[kind][number - 1]
+    key = key if place is None else f".at[{place}]" if key == ".at" else key
+    return replace(problem, place=f"building.{kind}[{entry}]{key}")
+
+
+def _too_fine(section: BuildingSection, building: Building) -> Iterator[Problem]:
+    area = sum(slab.area for slab in (*building.slabs, *building.ramps))
+    nodes = area / section.mesh_size**2
+    if nodes > _MAX_NODES:
+        yield Problem(
+            place="building.mesh_size",
+            value=f"{section.mesh_size:g} m",
+            rule=f"the mesh may have {_MAX_NODES} nodes; this one would have {nodes:.3g}",
+            remedy=f"use {np.ceil(100.0 * np.sqrt(area / _MAX_NODES)) / 100.0:g} m or more",
+        )
+
+
+def _meshing(draft: Draft, section: BuildingSection, building: Building) -> Meshing:
+    """Return how a building is meshed: finer where asked, and along routes and points."""
+    refinements: list[Refinement] = []
+    guides: dict[str, list[Any]] = {}
+    default = building.floors[0] if len(building.floors) == 1 else None
+    for one in section.refine:
+        lines = [one.along] if one.along else [(place,) for place in one.at or ()]
+        refinements += [
+            Refinement(
+                line=np.array(line, dtype=float), size=one.size, reach=one.reach, sheet=one.on
+            )
+            for line in lines
+        ]
+    for route in draft.file.items("route"):
+        line, on = np.array(route.path, dtype=float), route.on or default
+        if section.size_at_routes is not None:
+            refinements.append(
+                Refinement(line=line, size=section.size_at_routes, reach=1.5, sheet=on)
+            )
+        if section.edges_along_routes and on is not None:
+            guides.setdefault(on, []).append(line)
+    for point in draft.file.items("point"):
+        place, on = np.array([point.at], dtype=float), point.on or default
+        if section.size_at_points is not None:
+            refinements.append(
+                Refinement(line=place, size=section.size_at_points, reach=1.0, sheet=on)
+            )
+        if section.nodes_at_points and on is not None:
+            guides.setdefault(on, []).append(place)
+    return Meshing(
+        mesh_size=float(section.mesh_size),
+        refinements=tuple(refinements),
+        guides={on: tuple(lines) for on, lines in guides.items() if on in building.floors},
+        only_triangles=section.elements == "triangles",
+    )

@@ -204,7 +204,8 @@ def spoil(file, how):
     if how == "other numbers":  # an archive of its own, whole but for the checksum
         packed = io.BytesIO()
         with np.load(io.BytesIO(bytes(data[32:]))) as kept:
-            np.savez(packed, **{name: kept[name] + 1 for name in kept.files if "time" in name})
+            other = {n: kept[n] + 1 if kept[n].dtype.kind == "f" else kept[n] for n in kept.files}
+            np.savez(packed, **other)
         data = data[:32] + packed.getvalue()
     file.write_bytes(b"" if how == "empty" else bytes(data))
 

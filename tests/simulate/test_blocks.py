@@ -1,5 +1,7 @@
 """The block solver: its answers do not depend on how time and runs are cut."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -145,6 +147,18 @@ def test_vehicles_that_come_and_go_leave_blocks_without_wheels():
     both = ensemble(floor, [early, late], **settings).velocity
     alone = sum(ensemble(floor, one, **settings).velocity for one in (early, late))
     assert difference(both, alone) < 1e-9
+
+
+def test_a_vehicle_that_departs_later_does_the_same_later():
+    """The record of one that departs at 2 s is that of one that departs at once, 2 s behind."""
+    floor, dt, late = small_floor(mesh_size=2.0), 0.01, 2.0
+    method = Decoupled(integration=Modal(f_max=60.0, dt=dt))
+    settings = {"method": method, "points": POINTS, "n_runs": 2, "seed": 5}
+    now = ensemble(floor, way(), duration=4.0, **settings).velocity
+    then = ensemble(floor, replace(way(), depart=late), duration=4.0 + late, **settings).velocity
+    shift = round(late / dt)
+    assert np.abs(then[:, : shift - 20]).max() < 1e-9 * np.abs(then).max()
+    assert difference(then[:, shift:], now) < 1e-9
 
 
 def test_smooth_road_and_ramp_make_no_variance():

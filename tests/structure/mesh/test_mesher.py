@@ -122,7 +122,8 @@ def test_elements_are_small_near_a_line_and_grow_beyond():
     away = np.abs(ends[:, :, 1] - 6.0).max(axis=1)
     assert length[away < 0.5].max() < 0.25 * 1.7
     assert length[away > 6.0].max() > 1.0
-    allowed = np.minimum(0.25 + 0.5 * np.maximum(away - 0.5, 0.0), 1.5)
+    middle = np.abs(ends[:, :, 1].mean(axis=1) - 6.0)
+    allowed = np.minimum(0.25 + 0.5 * np.maximum(middle - 0.5, 0.0), 1.5)
     assert (length < 2.0 * allowed).all()
 
 
@@ -140,6 +141,21 @@ def test_two_sheets_that_are_tied_have_the_same_nodes_along_the_tie():
     above, below = (mesh.nodes[mesh.along(i, wall)] for i in (0, 1))
     assert above[:, :2] == pytest.approx(below[:, :2], abs=1e-9)
     assert {2.3, 4.1} <= set(above[:, 0].round(9).tolist())
+
+
+def test_a_wall_is_divided_alike_where_only_one_of_its_storeys_is_refined():
+    wall = np.array([[1.0, 3.0], [7.0, 3.0]])
+    sheets = [
+        Sheet(name=name, areas=(Area(outline=box(0, 0, 8, 6)),), lines=(wall,), plane=plane)
+        for name, plane in (("up", np.array([3.0, 0.0, 0.0])), ("low", np.zeros(3)))
+    ]
+    fine = Refinement(line=np.array([[2.0, 3.0]]), size=0.2, reach=0.5, sheet="up")
+    mesh = mesh_sheets(sheets, size=1.0, refinements=[fine], ties=[Tie(sheets=(0, 1), line=wall)])
+    above, below = (mesh.nodes[mesh.along(i, wall), :2] for i in (0, 1))
+    assert above == pytest.approx(below, abs=1e-9)
+    steps = np.diff(above[:, 0])
+    assert steps.min() < 0.25
+    assert steps.max() > 0.6
 
 
 def test_a_ramp_shares_its_edge_with_the_floor_that_it_begins_on():

@@ -32,7 +32,7 @@ def test_nodes_on_a_held_edge_are_not_assessed(tmp_path, monkeypatch):
     study = load_study(path)
     result = run_study(study)
     (mapped,) = result.maps.values()
-    held = study.map.places.xy[:, 0] < 1e-9
+    held = study.map.grids[0].xy[:, 0] < 1e-9
     assert 0 < held.sum() < len(held)
     np.testing.assert_array_equal(np.isnan(mapped.classes.margin), held[None])
     np.testing.assert_array_equal(np.isnan(mapped.classes.share_exceeding), held[None])

@@ -24,8 +24,8 @@ def test_a_place_of_the_map_is_what_a_point_there_gives(tmp_path):
     """A point of the study at a place of the map: the same runs, the same verdict within 1 %."""
     text = LONG.replace('at = ["3 m", "3 m"]', 'at = ["1.5 m", "4.5 m"]')
     study = study_of(tmp_path, text + MAP)
-    at = int(np.abs(study.map.places.xy - [1.5, 4.5]).sum(axis=1).argmin())
-    np.testing.assert_allclose(study.map.places.xy[at], [1.5, 4.5])
+    at = int(np.abs(study.map.grids[0].xy - [1.5, 4.5]).sum(axis=1).argmin())
+    np.testing.assert_allclose(study.map.grids[0].xy[at], [1.5, 4.5])
     result = run_study(study)
     (mapped,), ((verdict,),) = result.maps.values(), result.verdicts.values()
     assert mapped.classes.margin[0, at] == pytest.approx(verdict.margin, rel=0.01)
@@ -42,7 +42,7 @@ def test_a_rougher_road_has_its_own_map(tmp_path):
     study = study_of(tmp_path, text.replace('["VC-A"]', '["VC-A", "stepper-B"]') + MAP)
     result = run_study(study)
     case, method = study.cases[0], study.methods[0]
-    points = {f"p{i}": tuple(p) for i, p in enumerate(study.map.places.xy)}
+    points = {f"p{i}": tuple(p) for i, p in enumerate(study.map.grids[0].xy)}
     alone = ensemble(
         study.floor, study.acting(case, "C", method), method=method.interaction,
         points=points, n_runs=study.runs, seed=study.seed, duration=study.duration,
@@ -86,12 +86,12 @@ def test_every_node_at_every_step_is_what_a_point_there_gives(tmp_path):
     study = study_of(tmp_path, LONG + exact)
     nodes = study.floor.nodes
     level = nodes[np.abs(nodes[:, 2]) < 1e-9][:, :2]
-    assert {tuple(p) for p in np.round(study.map.places.xy, 6)} == {
+    assert {tuple(p) for p in np.round(study.map.grids[0].xy, 6)} == {
         tuple(p) for p in np.round(level, 6)
     }
     result = run_study(study)
     (mapped,), ((verdict,),) = result.maps.values(), result.verdicts.values()
-    (at,) = np.flatnonzero(np.abs(study.map.places.xy - [3.0, 3.0]).sum(axis=1) < 1e-9)
+    (at,) = np.flatnonzero(np.abs(study.map.grids[0].xy - [3.0, 3.0]).sum(axis=1) < 1e-9)
     # single precision, and a record that ends before the lowest bands are at rest
     assert mapped.classes.margin[0, at] == pytest.approx(verdict.margin, rel=1e-4)
     (cell,) = result.cells.values()

@@ -188,7 +188,7 @@ def test_a_mesh_too_coarse_for_the_highest_band_is_doubted(doubts):
 
 @pytest.mark.slow
 def test_half_the_mesh_changes_what_the_doubt_says_it_changes(tmp_path):
-    """Another mesh: bands of the floor that 0.75 m carries agree, one above is off by far.
+    """Another mesh: bands of the floor that 0.75 m carries agree; those above are off by more.
 
     Below 48 Hz a wave's frequency is at most 11 % high, half a band: levels from 6.3 Hz, where the
     floor answers, move by less than a quarter. Above it modes fall into other bands.
@@ -201,5 +201,6 @@ def test_half_the_mesh_changes_what_the_doubt_says_it_changes(tmp_path):
     found = compare_meshes(study)
     assert found.sizes == (0.75, 0.375)
     off = abs(found.ratios[0] - 1.0)
-    assert off[(found.bands > 6.0) & (found.bands < 41.0)].max() < 0.25
-    assert off[found.bands > 48.0].max() > 0.25
+    carried = off[(found.bands > 6.0) & (found.bands < 41.0)]
+    assert carried.max() < 0.25
+    assert off[found.bands > 48.0].mean() > 1.5 * carried.mean()

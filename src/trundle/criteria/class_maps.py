@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -69,6 +69,16 @@ class ClassMap:
             if self.complete[i]:
                 found[self.margin[i] >= 1.0] = i
         return found
+
+    def part(self, places: slice) -> ClassMap:
+        """Return some of the places."""
+        return replace(
+            self,
+            places=self.places[places],
+            margin=self.margin[:, places],
+            governing_band=self.governing_band[:, places],
+            share_exceeding=self.share_exceeding[:, places],
+        )
 
     def order(self) -> list[int]:
         """Return which criteria are of velocity, from the widest to the strictest."""

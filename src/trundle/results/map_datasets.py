@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -12,7 +12,7 @@ from trundle.criteria import ClassMap, envelope_of
 from trundle.response.quantities import mapped
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.study_result import StudyResult
-from trundle.study.map_plan import MapPlan
+from trundle.study.map_plan import MapGrid, MapPlan
 
 __all__ = ["map_groups", "single_maps"]
 
@@ -30,28 +30,44 @@ def map_groups(result: StudyResult) -> dict[str, xr.Dataset]:
     """Return the datasets of maps by the path of their group.
 
     ``/maps/CASE`` at the study's speeds, ``/map_speeds/CASE`` at those that the map names, and
-    ``/map_envelope``, the worst of all single vehicles' maps.
+    ``/map_envelope``, the worst of all single vehicles' maps; where several surfaces are mapped,
+    each ends with the name of its surface.
     """
-    study, plan = result.study, result.study.map
+    plan = result.study.map
     if plan is None or not result.maps:
         return {}
     groups: dict[str, xr.Dataset] = {}
-    roads = list(study.roads)
-    for case in study.cases:
-        if MapKey(case.name, roads[0]) not in result.maps:
+    for grid, part in plan.parts():
+        on = f"/{grid.on}" if len(plan.grids) > 1 else ""
+        of_grid = {key: one.part(part) for key, one in result.maps.items()}
+        for path, dataset in _groups_of(result, plan, grid, of_grid).items():
+            if grid.on is not None:
+                dataset.attrs["surface"] = grid.on
+            groups[path + on] = dataset
+    return groups
+
+
+def _groups_of(
+    result: StudyResult, plan: MapPlan, grid: MapGrid, maps: Mapping[MapKey, StudyMap]
+) -> dict[str, xr.Dataset]:
+    """Return the datasets of the maps of one surface."""
+    groups: dict[str, xr.Dataset] = {}
+    laid, roads = (plan, grid), list(result.study.roads)
+    for case in result.study.cases:
+        if MapKey(case.name, roads[0]) not in maps:
             continue
-        own = [result.maps[MapKey(case.name, road)] for road in roads]
-        groups[f"/maps/{case.name}"] = _dataset(plan, own, {"road": roads})
+        own = [maps[MapKey(case.name, road)] for road in roads]
+        groups[f"/maps/{case.name}"] = _dataset(laid, own, {"road": roads})
         if plan.speeds:
             keys = [MapKey(case.name, road, v) for v in plan.speeds for road in roads]
             dataset = _dataset(
-                plan, [result.maps[key] for key in keys], {"speed": plan.speeds, "road": roads}
+                laid, [maps[key] for key in keys], {"speed": plan.speeds, "road": roads}
             )
             dataset["speed"].attrs["units"] = "m/s"
             groups[f"/map_speeds/{case.name}"] = dataset
-    single = list(single_maps(result).values())
+    single = [maps[key] for key in single_maps(result)]
     if single:
-        groups["/map_envelope"] = _envelope(plan, single)
+        groups["/map_envelope"] = _envelope(grid, single)
     return groups
 
 
@@ -61,15 +77,18 @@ def single_maps(result: StudyResult) -> dict[MapKey, StudyMap]:
     return {key: one for key, one in result.maps.items() if key.case in alone}
 
 
-def _dataset(plan: MapPlan, maps: Sequence[StudyMap], ways: dict[str, Sequence[Any]]) -> xr.Dataset:
+def _dataset(
+    laid: tuple[MapPlan, MapGrid], maps: Sequence[StudyMap], ways: dict[str, Sequence[Any]]
+) -> xr.Dataset:
     """Return maps on their grid, along the ways in which they differ."""
+    plan, grid = laid
     share = f"that {plan.percentile:g} % of {plan.runs} runs stay below"
 
     classes = [one.classes for one in maps]
-    dataset = _of_classes(plan, classes, ways)
+    dataset = _of_classes(grid, classes, ways)
     for quantity, _ in mapped():
         dataset[quantity.name] = _variable(
-            plan,
+            grid,
             ways,
             lambda i, name=quantity.name: maps[i].numbers[name],
             quantity.units,
@@ -78,22 +97,22 @@ def _dataset(plan: MapPlan, maps: Sequence[StudyMap], ways: dict[str, Sequence[A
     return dataset
 
 
-def _envelope(plan: MapPlan, maps: Sequence[StudyMap]) -> xr.Dataset:
+def _envelope(grid: MapGrid, maps: Sequence[StudyMap]) -> xr.Dataset:
     """Return the worst of maps at every place."""
-    dataset = _of_classes(plan, [envelope_of([one.classes for one in maps])], {})
+    dataset = _of_classes(grid, [envelope_of([one.classes for one in maps])], {})
     dataset.attrs["description"] = f"worst of {len(maps)} maps of single vehicles at every place"
     return dataset
 
 
 def _of_classes(
-    plan: MapPlan, classes: Sequence[ClassMap], ways: dict[str, Sequence[Any]]
+    grid: MapGrid, classes: Sequence[ClassMap], ways: dict[str, Sequence[Any]]
 ) -> xr.Dataset:
     names = [criterion.name for criterion in classes[0].criteria]
     return xr.Dataset(
         {
             **{
                 name: _variable(
-                    plan,
+                    grid,
                     {**ways, "criterion": names},
                     lambda i, name=name: getattr(classes[i], name),
                     units,
@@ -102,7 +121,7 @@ def _of_classes(
                 for name, (units, long_name) in _BY_CRITERION.items()
             },
             "class_index": _variable(
-                plan,
+                grid,
                 ways,
                 lambda i: classes[i].classes().astype(float),
                 "1",
@@ -112,14 +131,14 @@ def _of_classes(
         coords={
             **{name: list(values) for name, values in ways.items()},
             "criterion": names,
-            "x": ("x", plan.x, {"units": "m"}),
-            "y": ("y", plan.y, {"units": "m"}),
+            "x": ("x", grid.x, {"units": "m"}),
+            "y": ("y", grid.y, {"units": "m"}),
         },
     )
 
 
 def _variable(
-    plan: MapPlan,
+    grid: MapGrid,
     ways: dict[str, Sequence[Any]],
     pick: Callable[[int], np.ndarray],
     units: str,
@@ -128,5 +147,7 @@ def _variable(
     """Return what is picked of every map in order, the grid last."""
     outer = [len(values) for name, values in ways.items() if name != "criterion"]
     data = np.stack([pick(i) for i in range(int(np.prod(outer)))])
-    shape = (*(len(values) for values in ways.values()), len(plan.y), len(plan.x))
-    return ((*ways, "y", "x"), data.reshape(shape), {"units": units, "long_name": long_name})
+    out = np.full((*data.shape[:-1], *grid.there.shape), np.nan)
+    out[..., grid.there] = data
+    shape = (*(len(values) for values in ways.values()), *grid.there.shape)
+    return ((*ways, "y", "x"), out.reshape(shape), {"units": units, "long_name": long_name})

@@ -40,3 +40,11 @@ class StudyMap:
     classes: ClassMap
     numbers: Mapping[str, Array]
     band_levels: Float[Array, "places bands"]
+
+    def part(self, places: slice) -> StudyMap:
+        """Return some of the places."""
+        return StudyMap(
+            classes=self.classes.part(places),
+            numbers={name: values[places] for name, values in self.numbers.items()},
+            band_levels=self.band_levels[places],
+        )

@@ -75,4 +75,4 @@ def map_seconds(job: Job) -> float:
     if job.map is None:
         return 0.0
     columns = 67.0 + job.map.runs * len(job.factors) * (1.5 if job.map.peaks else 1.0)
-    return 2e-8 * _steps(job) * len(job.map.places) * columns
+    return 2e-8 * _steps(job) * job.map.n_places * columns

@@ -180,8 +180,8 @@ def _memory_of(job: Job) -> float:
     mapped = 0.0
     if job.map is not None:
         forces = 8.0 * record * contacts * job.map.runs * roads
-        kept = 8.0 * 22 * len(job.map.places) * job.map.runs * roads
-        mapped = 2.0 * forces + kept + min(_MAP, 8.0 * record * len(job.map.places) * 60)
+        kept = 8.0 * 22 * job.map.n_places * job.map.runs * roads
+        mapped = 2.0 * forces + kept + min(_MAP, 8.0 * record * job.map.n_places * 60)
     return held + rows + mapped + (_EXACT if job.n_waves else 0.0)
 
 

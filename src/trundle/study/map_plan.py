@@ -2,19 +2,74 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from trundle._typing import Array
 from trundle.criteria import Criterion
 from trundle.signals import Averaging
-from trundle.structure import Spots
+from trundle.structure import Spots, Surface
 
-__all__ = ["MapPlan", "map_places"]
+__all__ = ["MapGrid", "MapPlan", "map_places"]
 
 _MOST = 300  # places of a map unless a spacing is given: half a minute for 1000 runs
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MapGrid:
+    """Hold the places of a map on one surface.
+
+    Attributes
+    ----------
+    x, y : ndarray of float
+        Lines of the grid in plan [m].
+    there : ndarray of bool, shape (n_rows, n_columns)
+        Where the surface is: not in an opening, not beyond an edge.
+    spots : Spots
+        The places that are there, x running fastest.
+    """
+
+    x: Float[Array, " columns"]
+    y: Float[Array, " rows"]
+    there: Bool[Array, "rows columns"]
+    spots: Spots
+
+    @classmethod
+    def over(
+        cls,
+        x: Float[Array, " columns"],
+        y: Float[Array, " rows"],
+        surface: Surface | None,
+        on: str | None,
+    ) -> MapGrid:
+        """Lay a grid over a surface; over a whole rectangle without one."""
+        xy = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+        there = np.ones(len(xy), dtype=bool)
+        if surface is not None:
+            xy = surface.frame.from_plan(xy)
+            there = surface.holds(xy)
+        shape = (len(y), len(x))
+        return cls(x=x, y=y, there=there.reshape(shape), spots=Spots(xy=xy[there], on=on))
+
+    @property
+    def on(self) -> str | None:
+        """Name of the surface; None for the only one."""
+        return self.spots.on
+
+    @property
+    def xy(self) -> Float[Array, "places 2"]:
+        """Places in plan [m]."""
+        return np.stack(np.meshgrid(self.x, self.y), axis=-1)[self.there]
+
+    def filled(self, values: Float[Array, " places"]) -> Float[Array, "rows columns"]:
+        """Return values of the places on the grid, NaN where there is none."""
+        out = np.full(self.there.shape, np.nan)
+        out[self.there] = values
+        return out
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -23,8 +78,8 @@ class MapPlan:
 
     Attributes
     ----------
-    x, y : ndarray of float
-        Lines of the grid of places [m].
+    grids : tuple of MapGrid
+        Places, surface by surface.
     runs : int
         Runs of each map, the first of the study's.
     criteria : tuple of Criterion
@@ -45,8 +100,7 @@ class MapPlan:
         Constant speeds of every vehicle that are mapped beside those of the study [m/s].
     """
 
-    x: Float[Array, " columns"]
-    y: Float[Array, " rows"]
+    grids: tuple[MapGrid, ...]
     runs: int
     criteria: tuple[Criterion, ...]
     criterion: str
@@ -58,9 +112,28 @@ class MapPlan:
     speeds: tuple[float, ...]
 
     @property
-    def places(self) -> Spots:
-        """Return the places in plan, x running fastest."""
-        return Spots(xy=np.stack(np.meshgrid(self.x, self.y), axis=-1).reshape(-1, 2))
+    def places(self) -> tuple[Spots, ...]:
+        """Return the places on every surface."""
+        return tuple(grid.spots for grid in self.grids)
+
+    @property
+    def n_places(self) -> int:
+        """Number of places on all surfaces."""
+        return sum(map(len, self.places))
+
+    def parts(self) -> Iterator[tuple[MapGrid, slice]]:
+        """Give each grid with where its places stand among all."""
+        ends = np.cumsum([0, *map(len, self.places)])
+        for grid, (start, end) in zip(self.grids, pairwise(ends.tolist()), strict=True):
+            yield grid, slice(start, end)
+
+    def where(self, place: int) -> tuple[float, float, str | None]:
+        """Return where one of all places is in plan [m], and on which surface."""
+        for grid, part in self.parts():
+            if place < part.stop:
+                x, y = grid.xy[place - part.start]
+                return float(x), float(y), grid.on
+        raise IndexError(place)
 
 
 def map_places(

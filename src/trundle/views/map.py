@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +16,7 @@ from trundle.results.map_datasets import single_maps
 from trundle.results.maps import StudyMap
 from trundle.results.study_result import StudyResult
 from trundle.signals import nominal_frequency
+from trundle.study.map_plan import MapGrid, MapPlan
 from trundle.units import KMH
 from trundle.views.words import shown
 
@@ -38,6 +39,8 @@ class MapView:
         Levels that the share of runs stays below [m/s], [m/s2]; peaks NaN if not asked for.
     printed : bool
         Whether it is drawn among the pictures; at other speeds only the worst is.
+    grid : MapGrid
+        Its places.
     """
 
     title: str
@@ -45,45 +48,55 @@ class MapView:
     routes: tuple[str, ...]
     numbers: Mapping[str, Array]
     printed: bool
+    grid: MapGrid
 
 
 def map_views(result: StudyResult) -> list[MapView]:
     """Return the map of every case, road and speed, and last the worst of all single vehicles'.
 
     At speeds other than the study's, the worst of all single vehicles' maps follows those of each.
+    Where several surfaces are mapped, each has all of these.
     """
     plan = result.study.map
     if plan is None or not result.maps:
         return []
+    return [view for grid, part in plan.parts() for view in _views_on(result, plan, grid, part)]
+
+
+def _views_on(result: StudyResult, plan: MapPlan, grid: MapGrid, part: slice) -> list[MapView]:
+    maps = {key: one.part(part) for key, one in result.maps.items()}
+    on = f", {grid.on}" if len(plan.grids) > 1 else ""
     drives = result.study.drives
     driven = {
         case.name: tuple(name for name in case.routes if name in drives)
         for case in result.study.cases
     }
-    single = single_maps(result)
+    single = {key: maps[key] for key in single_maps(result)}
     views: list[MapView] = []
     for speed in (None, *plan.speeds):
         at = "" if speed is None else f" at {speed / KMH:.3g} km/h"
         views += [
             MapView(
-                title=f"{key.case}, class {key.road}{at}",
+                title=f"{key.case}, class {key.road}{at}{on}",
                 classes=one.classes,
                 routes=driven[key.case],
                 numbers=one.numbers,
                 printed=speed is None,
+                grid=grid,
             )
-            for key, one in result.maps.items()
+            for key, one in maps.items()
             if key.speed == speed
         ]
         here = [one for key, one in single.items() if key.speed == speed]
         if speed is not None and here:
-            views.append(_worst(result, here, f"worst{at}"))
+            views.append(_worst(result, here, f"worst{at}{on}", grid))
     if len(single) > 1:
-        views.append(_worst(result, list(single.values()), "worst of all single routes"))
+        words = f"worst of all single routes{on}"
+        views.append(_worst(result, list(single.values()), words, grid))
     return views
 
 
-def _worst(result: StudyResult, maps: list[StudyMap], title: str) -> MapView:
+def _worst(result: StudyResult, maps: list[StudyMap], title: str, grid: MapGrid) -> MapView:
     return MapView(
         title=title,
         classes=envelope_of([one.classes for one in maps]),
@@ -92,6 +105,7 @@ def _worst(result: StudyResult, maps: list[StudyMap], title: str) -> MapView:
             name: np.max([one.numbers[name] for one in maps], axis=0) for name in maps[0].numbers
         },
         printed=True,
+        grid=grid,
     )
 
 
@@ -112,36 +126,38 @@ def map_payload(result: StudyResult) -> dict[str, Any]:
     if plan is None or not result.maps:
         return {}
     views = map_views(result)
-    shape = (len(plan.y), len(plan.x))
     return {
-        "x": _short(plan.x),
-        "y": _short(plan.y),
         "names": class_names(views[0].classes),
         "criterion": plan.criterion,
         "levels": [[how.word, shown(quantity.units)[0]] for quantity, how in mapped()],
-        "views": [_view(result, view, shape) for view in views],
+        "views": [_view(result, view) for view in views],
         "routes": [
-            {"name": name, "x": _short(d.route.points[:, 0]), "y": _short(d.route.points[:, 1])}
-            for name, d in result.study.drives.items()
+            {"name": name, "x": _short(line[:, 0]), "y": _short(line[:, 1])}
+            for name, line in _lines(result).items()
         ],
         "points": [
-            {"name": name, "x": spot.x, "y": spot.y} for name, spot in result.study.points.items()
+            {"name": name, "x": float(x), "y": float(y)} for name, (x, y) in _places(result).items()
         ],
     }
 
 
-def _view(result: StudyResult, view: MapView, shape: tuple[int, int]) -> dict[str, Any]:
-    plan = result.study.map
+def _view(result: StudyResult, view: MapView) -> dict[str, Any]:
+    study, plan = result.study, result.study.map
     assert plan is not None  # the caller has looked
     classes = view.classes
     i = classes.index(plan.criterion)
     ranks = class_ranks(classes)
     return {
         "title": view.title,
-        "routes": list(view.routes),
-        "ranks": ranks.reshape(shape).tolist(),
+        "x": _short(view.grid.x),
+        "y": _short(view.grid.y),
+        "routes": _on(result, view.routes, view.grid.on),
+        "points": [name for name, spot in study.points.items() if spot.on == view.grid.on],
+        "ranks": [
+            [None if np.isnan(r) else int(r) for r in row] for row in view.grid.filled(ranks)
+        ],
         "readings": [
-            _readings(values, shape)
+            _readings(view.grid.filled(values))
             for values in (
                 classes.margin[i],
                 _named(classes.governing_band[i]),
@@ -152,10 +168,32 @@ def _view(result: StudyResult, view: MapView, shape: tuple[int, int]) -> dict[st
     }
 
 
-def _readings(values: np.ndarray, shape: tuple[int, int]) -> list[list[float | None]]:
+def _lines(result: StudyResult) -> dict[str, Array]:
+    """Return routes in plan [m]."""
+    study = result.study
+    return {
+        name: study.in_plan(drive.route.points, drive.route.on)
+        for name, drive in study.drives.items()
+    }
+
+
+def _places(result: StudyResult) -> dict[str, Array]:
+    """Return points in plan [m]."""
+    study = result.study
+    return {
+        name: study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
+        for name, spot in study.points.items()
+    }
+
+
+def _on(result: StudyResult, routes: Sequence[str], on: str | None) -> list[str]:
+    """Return the routes that lie on a surface."""
+    return [name for name in routes if result.study.drives[name].route.on == on]
+
+
+def _readings(rows: np.ndarray) -> list[list[float | None]]:
     """Return three digits of every value by row; nothing for what is not a number."""
-    short = [float(f"{v:.3g}") if np.isfinite(v) else None for v in values]
-    return [short[start : start + shape[1]] for start in range(0, len(short), shape[1])]
+    return [[float(f"{v:.3g}") if np.isfinite(v) else None for v in row] for row in rows]
 
 
 def _named(frequencies: np.ndarray) -> np.ndarray:

@@ -76,8 +76,10 @@ def _worst_place(result: StudyResult, key: CellKey, verdict: Verdict | None) -> 
     if np.isnan(margin).all():
         return ""
     worst = int(np.nanargmin(margin))
-    x, y = mapped.classes.places[worst]
-    return f"{margin[worst]:.3g} at ({x:.1f}, {y:.1f}) m"
+    plan = result.study.map
+    assert plan is not None  # there are maps
+    x, y, on = plan.where(worst)
+    return f"{margin[worst]:.3g} at ({x:.1f}, {y:.1f}) m" + ("" if on is None else f" on {on}")
 
 
 def _where(result: StudyResult, key: CellKey, verdict: Verdict | None) -> str:

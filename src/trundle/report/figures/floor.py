@@ -18,6 +18,7 @@ from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure import FloorPlan, Structure
+from trundle.structure.mesh import quality_of
 from trundle.study.model import Study
 
 __all__ = ["drawings"]
@@ -33,13 +34,14 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
     """
     study, modes = result.study, result.modes
     plan = study.plan
-    yield Drawing(
-        name="plan",
-        title="Plan with routes and points",
-        caption="Beams (grey), secondary beams (dashed), columns (squares), routes with their "
-        "direction and speed, and the points where the response is read.",
-        draw=lambda: plan_figure(study),
-    )
+    if study.building is None:
+        yield Drawing(
+            name="plan",
+            title="Plan with routes and points",
+            caption="Beams (grey), secondary beams (dashed), columns (squares), routes with their "
+            "direction and speed, and the points where the response is read.",
+            draw=lambda: plan_figure(study),
+        )
     if plan is not None:
         yield Drawing(
             name="section",
@@ -50,16 +52,34 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
     yield Drawing(
         name="mesh",
         title="Finite-element model",
-        caption="Shells (blue), beams at their centroids (dark), columns (orange).",
+        caption="Shells (blue), beams at their centroids (dark), columns (orange)."
+        + _quality_words(study),
         draw=lambda: mesh_figure(study.floor),
     )
-    if modes is not None:
+    if modes is not None and study.building is None:
         yield Drawing(
             name="modes",
             title="First modes of the floor",
             caption="Vertical motion of the slab, red up and blue down.",
             draw=lambda: modes_figure(study.floor, modes),
         )
+
+
+def _quality_words(study: Study) -> str:
+    """Say how well elements are shaped, where a mesher made them."""
+    if study.building is None:
+        return ""
+    found = quality_of(
+        surface.frame.coordinates(surface.nodes)[elements][:, :, :2]
+        for surface in study.floor.surfaces.values()
+        for _, elements in surface.parts
+        if elements.shape[1] > 2
+    )
+    return (
+        f" {found.n_quads} quadrilaterals and {found.n_triangles} triangles, corners of "
+        f"{found.least_angle:.0f} to {found.largest_angle:.0f} degrees, sides up to "
+        f"{found.largest_aspect:.1f} to 1."
+    )
 
 
 def plan_figure(study: Study) -> Figure:

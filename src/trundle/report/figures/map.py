@@ -10,14 +10,14 @@ from matplotlib.collections import QuadMesh
 from matplotlib.colorbar import Colorbar
 from matplotlib.colors import BoundaryNorm, ListedColormap, LogNorm
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, Polygon
 from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
 from trundle.report.canvas import COLOURS, Drawing, class_colours, new_figure
 from trundle.response.quantities import Quantity, mapped
 from trundle.results.study_result import StudyResult
-from trundle.study.map_plan import MapPlan
+from trundle.structure.building import Building
 from trundle.study.model import Study
 from trundle.views.map import MapView, class_names, class_ranks, map_views
 from trundle.views.words import shown
@@ -40,7 +40,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         return
     views = [view for view in map_views(result) if view.printed]
     about = (
-        f"{len(plan.places)} places, level that {plan.percentile:g} % of {plan.runs} runs stay "
+        f"{plan.n_places} places, level that {plan.percentile:g} % of {plan.runs} runs stay "
         f"below, averaging {plan.averaging}; a cell shows the place at its middle. "
         "Routes dashed, points crossed, columns grey."
     )
@@ -82,7 +82,7 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     for panel, view in zip(panels, views, strict=True):
         levels = class_ranks(view.classes)
-        _image(panel, study, plan, levels, view.routes, cmap=ListedColormap(colours), norm=norm)
+        _image(panel, study, view, levels, cmap=ListedColormap(colours), norm=norm)
     shown = sorted({int(r) for view in views for r in class_ranks(view.classes)})
     figure.legend(
         handles=[
@@ -107,15 +107,16 @@ def criterion_map_figure(study: Study, views: list[MapView]) -> Figure:
         image = _image(
             panel,
             study,
-            plan,
+            view,
             np.clip(margin, 0.1, 10.0),
-            view.routes,
             cmap="PuOr",
             norm=LogNorm(0.1, 10.0),
         )
-        grid = margin.reshape(len(plan.y), len(plan.x))
+        grid = view.grid.filled(margin)
         if (grid < 1.0).any() and (grid > 1.0).any():
-            panel.contour(plan.x, plan.y, grid, levels=[1.0], colors="black", linewidths=1.2)
+            panel.contour(
+                view.grid.x, view.grid.y, grid, levels=[1.0], colors="black", linewidths=1.2
+            )
     if image is not None:
         bar = _bar(figure, image, panels)
         bar.set_label(f"margin to {plan.criterion} = limit / level (below 1 fails; line at 1)")
@@ -133,7 +134,7 @@ def share_map_figure(study: Study, views: list[MapView]) -> Figure:
     for panel, view in zip(panels, views, strict=True):
         share = 100.0 * view.classes.share_exceeding[view.classes.index(plan.criterion)]
         look = {"cmap": "cividis_r", "vmin": 0.0, "vmax": 100.0}
-        image = _image(panel, study, plan, share, view.routes, **look)
+        image = _image(panel, study, view, share, **look)
     if image is not None:
         _bar(figure, image, panels).set_label(f"runs above {plan.criterion} [%]")
     return figure
@@ -154,7 +155,7 @@ def level_map_figure(study: Study, views: list[MapView], quantity: Quantity) -> 
     norm = LogNorm(low, high)
     image = None
     for panel, view, level in zip(panels, views, levels, strict=True):
-        image = _image(panel, study, plan, level, view.routes, cmap="cividis_r", norm=norm)
+        image = _image(panel, study, view, level, cmap="cividis_r", norm=norm)
     if image is not None:
         bar = _bar(figure, image, panels)
         bar.set_label(f"{quantity.heading} [{unit}]")
@@ -192,26 +193,50 @@ def _bar(figure: Figure, image: QuadMesh, panels: list[Axes]) -> Colorbar:
     return figure.colorbar(image, ax=panels, location="bottom", shrink=0.5, aspect=40)
 
 
-def _image(
-    panel: Axes, study: Study, plan: MapPlan, values: Array, routes: tuple[str, ...], **look: object
-) -> QuadMesh:
+def _image(panel: Axes, study: Study, view: MapView, values: Array, **look: object) -> QuadMesh:
     image = panel.pcolormesh(
-        plan.x,
-        plan.y,
-        values.reshape(len(plan.y), len(plan.x)),
+        view.grid.x,
+        view.grid.y,
+        view.grid.filled(values),
         shading="nearest",
         rasterized=True,
         **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
     )
     panel.set(xlim=study.extent[0], ylim=study.extent[1], aspect="equal")
     panel.set_facecolor("#D9D9D9")  # where nothing is assessed
-    for name in routes:
-        line = study.drives[name].route.points.T
+    for name in view.routes:
+        route = study.drives[name].route
+        if route.on != view.grid.on:
+            continue
+        line = study.in_plan(route.points, route.on).T
         panel.plot(*line, color="white", linewidth=2.4)
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
     for spot in study.points.values():
-        panel.plot(spot.x, spot.y, marker="X", markersize=6, color="black", markeredgecolor="white")
+        if spot.on != view.grid.on:
+            continue
+        place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
+        panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")
+    if study.building is not None:
+        _draw_building(panel, study.building, view.grid.on or next(iter(study.floor.surfaces)))
     if study.plan is not None and study.plan.column:
         x, y = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
         panel.plot(x.ravel(), y.ravel(), "s", markersize=2, color=COLOURS[7])
     return image
+
+
+def _draw_building(panel: Axes, building: Building, on: str) -> None:
+    """Draw the outlines of slabs and openings, columns and walls of a storey."""
+    for slab in building.slabs:
+        if slab.on == on:
+            for ring in (slab.outline, *slab.openings):
+                panel.plot(*np.vstack([ring, ring[:1]]).T, color="#555555", linewidth=0.7)
+    for ramp in building.ramps:
+        if ramp.name == on:
+            panel.plot(*np.vstack([ramp.outline, ramp.outline[:1]]).T, color="#555555")
+    levels = {storey.name for storey in building.storeys}
+    for wall in building.walls:
+        if on in levels & {s.name for s in building.between(wall.bottom, wall.top)}:
+            panel.plot(*wall.along.T, color="#333333", linewidth=1.6)
+    for column in building.columns:
+        if on in levels & {s.name for s in building.between(column.bottom, column.top)}:
+            panel.add_patch(Polygon(column.footprint, facecolor=COLOURS[7]))

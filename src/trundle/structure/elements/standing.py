@@ -37,6 +37,7 @@ ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 """Corners of a quadrilateral in its own coordinates, in order round it."""
 
 _NEWTON_STEPS = 8
+_FOLD = 1e-9  # of its size squared: a determinant below that is none
 _EDGE = 1e-6  # of its length, that a place may lie beside a line
 
 
@@ -165,6 +166,9 @@ def quad_locate(corners: Float[Array, "n 4 2"], places: Float[Array, "n 2"]) -> 
         slopes = (0.25 * XI * (1 + eta * ETA), 0.25 * ETA * (1 + xi * XI))
         gap = places - np.einsum("na,naj->nj", shape, corners)
         jacobian = np.stack([np.einsum("na,naj->nj", d, corners) for d in slopes], axis=2)
+        # the map of a convex element folds nowhere in it: who stands on a fold is outside, and stays
+        folded = np.abs(np.linalg.det(jacobian)) < _FOLD * np.abs(jacobian).max(axis=(1, 2)) ** 2
+        jacobian[folded], gap[folded] = np.eye(2), 0.0
         step = np.linalg.solve(jacobian, gap[:, :, None])[:, :, 0]
         local = np.clip(local + step, -4.0, 4.0)
     return Located(np.clip(local, -1.0, 1.0), np.abs(local).max(axis=1) - 1.0)

@@ -1,8 +1,17 @@
 """Meshes of plans: conforming to lines and points, mostly quadrilaterals."""
 
 from trundle.structure.mesh.mesher import mesh_sheets
-from trundle.structure.mesh.quality import MeshQuality
+from trundle.structure.mesh.quality import MeshQuality, quality_of
 from trundle.structure.mesh.sheet import Area, Refinement, Sheet, Tie
 from trundle.structure.mesh.sheet_mesh import SheetMesh
 
-__all__ = ["Area", "MeshQuality", "Refinement", "Sheet", "SheetMesh", "Tie", "mesh_sheets"]
+__all__ = [
+    "Area",
+    "MeshQuality",
+    "Refinement",
+    "Sheet",
+    "SheetMesh",
+    "Tie",
+    "mesh_sheets",
+    "quality_of",
+]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 
-__all__ = ["MeshQuality", "angles", "aspects", "squareness"]
+__all__ = ["MeshQuality", "angles", "aspects", "quality_of", "squareness"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,6 +35,30 @@ class MeshQuality:
     largest_angle: float
     largest_aspect: float
     share_of_quads: float
+
+
+def quality_of(shapes: Iterable[Float[Array, "_ corners 2"]]) -> MeshQuality:
+    """Measure groups of elements, given the corners of each in their plane [m]."""
+    groups = [shape for shape in shapes if len(shape)]
+    turns = np.degrees(np.concatenate([angles(shape).ravel() for shape in groups]))
+    areas = dict.fromkeys((3, 4), 0.0)
+    counts = dict.fromkeys(areas, 0)
+    for shape in groups:
+        areas[shape.shape[1]] += float(_areas(shape).sum())
+        counts[shape.shape[1]] += len(shape)
+    return MeshQuality(
+        n_quads=counts[4],
+        n_triangles=counts[3],
+        least_angle=float(turns.min()),
+        largest_angle=float(turns.max()),
+        largest_aspect=float(max(aspects(shape).max() for shape in groups)),
+        share_of_quads=areas[4] / sum(areas.values()),
+    )
+
+
+def _areas(corners: Array) -> Array:
+    x, y = corners[..., 0], corners[..., 1]
+    return 0.5 * np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1))
 
 
 def angles(corners: Float[Array, "elements n 2"]) -> Float[Array, "elements n"]:

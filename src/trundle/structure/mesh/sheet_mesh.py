@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from trundle._typing import Array
 from trundle.structure.mesh.planar import SNAP, on_segment
-from trundle.structure.mesh.quality import MeshQuality, angles, aspects
+from trundle.structure.mesh.quality import MeshQuality, quality_of
 
 __all__ = ["SheetMesh"]
 
@@ -61,19 +61,4 @@ class SheetMesh:
     @property
     def quality(self) -> MeshQuality:
         """How well its elements are shaped, in plan."""
-        shapes = [self.nodes[e][:, :, :2] for e in (self.quads, self.triangles) if len(e)]
-        turns = np.degrees(np.concatenate([angles(s).ravel() for s in shapes]))
-        area = [_areas(s).sum() for s in shapes]
-        return MeshQuality(
-            n_quads=len(self.quads),
-            n_triangles=len(self.triangles),
-            least_angle=float(turns.min()),
-            largest_angle=float(turns.max()),
-            largest_aspect=float(max(aspects(s).max() for s in shapes)),
-            share_of_quads=float(area[0] / sum(area)) if len(self.quads) else 0.0,
-        )
-
-
-def _areas(corners: Array) -> Array:
-    x, y = corners[..., 0], corners[..., 1]
-    return 0.5 * np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1))
+        return quality_of(self.nodes[e][:, :, :2] for e in (self.quads, self.triangles))

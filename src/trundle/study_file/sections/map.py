@@ -4,24 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
 
-from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
-from trundle.structure import (
-    FloorPlan,
-    mesh_lines,
-)
-from trundle.study.map_plan import MapPlan, map_places
+from trundle.structure import FloorPlan, Surface, mesh_lines
+from trundle.study.map_plan import MapGrid, MapPlan, map_places
 from trundle.study.model import Assessment, Drive, Extent, MethodPlan
-from trundle.study_file.draft import Draft
+from trundle.study_file.draft import Draft, surface_at
 from trundle.study_file.fields import (
     Flag,
+    Name,
     PositiveLength,
     Section,
     Speed,
@@ -42,6 +40,7 @@ _LEVEL_BYTES = 100.0  # of all levels of one run at one place
 class MapSection(Section):
     """What is mapped over the whole floor, by the method that carries the verdict."""
 
+    on: Name | tuple[Name, ...] | None = None
     places: Literal["grid", "nodes"] = "grid"
     spacing: PositiveLength | None = None
     runs: Annotated[Whole, Field(ge=1, le=_MANY)] | None = None
@@ -70,6 +69,9 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         return draft, [problem]
     if draft.extent is None or draft.assessment is None or draft.band is None:
         return draft, []
+    surfaces, found = _surfaces(draft, section.on)
+    if found:
+        return draft, found
     checked = _Checked(
         section=section,
         extent=draft.extent,
@@ -82,9 +84,25 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         band_follows_dt=draft.band_follows_dt,
         runs=min(section.runs or _RUNS, file.general.runs),
         n_roads=max(1, len(file.items("road"))),
+        known=() if draft.model is None else tuple(draft.model.surfaces),
+        surfaces=surfaces,
     )
     found = list(_problems(checked))
     return (draft if found else replace(draft, map=_plan(checked))), found
+
+
+def _surfaces(
+    draft: Draft, on: str | tuple[str, ...] | None
+) -> tuple[tuple[Surface, ...], list[Problem]]:
+    """Return the surfaces that are mapped: those named, or all."""
+    if on is None:
+        return (() if draft.model is None else tuple(draft.model.surfaces.values())), []
+    found, problems = list[Surface](), list[Problem]()
+    for name in (on,) if isinstance(on, str) else on:
+        surface, mistakes = surface_at(draft, "map.on", name)
+        problems += mistakes
+        found += [] if surface is None else [surface]
+    return tuple(found), problems
 
 
 def fields(draft: Draft) -> dict[str, Any]:
@@ -107,6 +125,8 @@ class _Checked:
     band_follows_dt: bool
     runs: int
     n_roads: int
+    known: tuple[str, ...]
+    surfaces: tuple[Surface, ...]
 
     @property
     def curves(self) -> list[str]:
@@ -114,12 +134,25 @@ class _Checked:
         some = (c for c in self.assessment.criteria if c.quantity in _MAPPED)
         return [c.name for c in some if c.axis != "horizontal"]
 
-    def lines(self) -> tuple[Array, Array]:
-        """Return the lines of the grid of places along x and along y [m]."""
-        (x, y), spacing = self.extent, self.section.spacing
+    @cached_property
+    def grids(self) -> tuple[MapGrid, ...]:
+        """Places of every surface that is mapped."""
+        spacing = self.section.spacing
         if self.section.places == "nodes" and self.plan is not None:
-            return mesh_lines(self.plan, mesh_size=self.mesh_size)
-        return map_places(x, spacing, y), map_places(y, spacing, x)
+            x, y = mesh_lines(self.plan, mesh_size=self.mesh_size)
+            return (MapGrid.over(x, y, None, None),)
+        if not self.surfaces:
+            x, y = self.extent
+            lines = map_places(x, spacing, y), map_places(y, spacing, x)
+            return (MapGrid.over(*lines, None, None),)
+        several = len(self.known) > 1
+        grids: list[MapGrid] = []
+        for surface in self.surfaces:
+            low, high = (surface.frame.to_plan(corner[None])[0] for corner in surface.extent)
+            x, y = (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
+            lines = map_places(x, spacing, y), map_places(y, spacing, x)
+            grids.append(MapGrid.over(*lines, surface, surface.name if several else None))
+        return tuple(grids)
 
 
 def _problems(given: _Checked) -> Iterator[Problem]:
@@ -162,11 +195,9 @@ def _problems(given: _Checked) -> Iterator[Problem]:
 
 def _plan(given: _Checked) -> MapPlan:
     section, names = given.section, given.curves
-    x, y = given.lines()
     criteria = tuple(c for c in given.assessment.criteria if c.quantity in _MAPPED)
     return MapPlan(
-        x=x,
-        y=y,
+        grids=given.grids,
         runs=given.runs,
         criteria=criteria,
         criterion=section.criterion or ("VC-B" if "VC-B" in names else names[-1]),
@@ -201,6 +232,7 @@ def _sizes(given: _Checked) -> Iterator[Problem]:
     section = given.section
     spacing = given.mesh_size if section.places == "nodes" else section.spacing or 1e9
     places = float(np.prod([np.ceil((b - a) / spacing) for a, b in given.extent]))
+    places *= max(1, len(given.surfaces))
     if places > _MOST_PLACES:
         yield Problem(
             place="map.places" if section.places == "nodes" else "map.spacing",

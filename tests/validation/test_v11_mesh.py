@@ -4,7 +4,7 @@ The container truck drives along the rear road over 120 cosines (class B, to 90 
 levels are energies over six points of one record by the default method. The two meshes share
 nothing but the plan. `trundle check` says up to which frequency a mesh carries the slab's bending
 waves with seven elements to a wave, whose frequency is then 11 % high, half a band: up to there the
-energies agree to a fifth, above they do not, which the second part of the table shows.
+energies agree to a quarter, above they do not, which the second part of the table shows.
 """
 
 import numpy as np
@@ -47,7 +47,7 @@ def test_two_meshes(record):
     assert nominal_frequency(BANDS[carried].max()) == 4.0  # what the check warns of
     for f, coarse, fine in zip(BANDS[carried], *(x[carried] for x in levels.values()), strict=True):
         name = f"six points, {nominal_frequency(f):g} Hz band, which 2 m carry"
-        record.row(name, 1e6 * fine, 1e6 * coarse, unit="um/s", rtol=0.2)
+        record.row(name, 1e6 * fine, 1e6 * coarse, unit="um/s", rtol=0.25)
     ratio = np.exp(np.abs(np.log(levels[2.0] / levels[1.0])))
     record.row(
         "largest ratio of levels in the bands that 2 m do not carry", 1.0, ratio[~carried].max(),

@@ -11,11 +11,22 @@ from trundle.cli.screen import print_table, progress_bar
 from trundle.run.estimate import estimate_of
 from trundle.run.meshes import compare_meshes, on_two_meshes
 from trundle.signals import nominal_frequency
-from trundle.structure import resolved_frequency
+from trundle.structure import building_resolution, resolved_frequency
+from trundle.study.model import Study
 from trundle.study_file.build import load_study
 from trundle.units import MICROMETRE_PER_SECOND
 
 __all__ = ["compare"]
+
+
+def _reach(study: Study, size: float) -> float:
+    """Return up to what frequency a mesh carries bending waves [Hz]."""
+    if study.plan is not None:
+        return resolved_frequency(study.plan, size)
+    if study.building is None:
+        return np.inf
+    parts = (*study.building.slabs, *study.building.ramps)
+    return building_resolution([part.section for part in parts], size)
 
 
 def compare(path: Path, *, yes: bool = False) -> None:
@@ -25,7 +36,7 @@ def compare(path: Path, *, yes: bool = False) -> None:
     with progress_bar() as tell:
         found = compare_meshes(study, tell=tell)
     coarse, fine = found.sizes
-    reach = np.inf if study.plan is None else resolved_frequency(study.plan, coarse)
+    reach = _reach(study, coarse)
     for p, point in enumerate(found.points):
         print_table(
             f"{point}: {found.case}, road {found.road}, {found.method}; rms velocity [um/s]",

@@ -14,6 +14,7 @@ from trundle.cli.result_tables import print_result
 from trundle.cli.screen import progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.report import unused_numbers
+from trundle.results.mesh_change import mesh_words
 from trundle.results.results_folder import check_target
 from trundle.run.estimate import estimate_of
 from trundle.study.doubts import study_doubts
@@ -51,6 +52,8 @@ def run(
     report = place / "report.html"
     if show == "tables":
         print_result(result)
+        if result.mesh is not None:
+            print(f"mesh: {mesh_words(result.mesh)}")
     for method, found in result.warnings().items() if show != "json" else ():
         for warning in found:
             if warning not in told:

@@ -12,6 +12,13 @@ _WIDTH = 66
 _ASPECT = 0.5  # a character is about twice as tall as wide
 
 
+def _along(ring: np.ndarray) -> np.ndarray:
+    """Return many places along a closed line [m]."""
+    ends = np.roll(ring, -1, axis=0)
+    shares = np.linspace(0.0, 1.0, 200)[:, None, None]
+    return (ring + shares * (ends - ring)).reshape(-1, 2)
+
+
 def plan_sketch(study: Study) -> str:
     """Return the plan with columns (+), routes (letters) and points (1, 2, ...), y upwards."""
     (x0, x1), (y0, y1) = study.extent
@@ -26,14 +33,21 @@ def plan_sketch(study: Study) -> str:
     if study.plan is not None and study.plan.column:
         lines = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
         _put(np.stack([line.ravel() for line in lines], axis=1), "+")
+    if study.building is not None:
+        for slab in (*study.building.slabs, *study.building.ramps):
+            for ring in (slab.outline, *getattr(slab, "openings", ())):
+                _put(_along(ring), ".")
+        if study.building.columns:
+            _put(np.array([column.at for column in study.building.columns]), "+")
     legend = []
     for i, (name, drive) in enumerate(study.drives.items()):
         letter = chr(ord("a") + i % 26)
         stations = np.linspace(0.0, drive.route.length, 400)
-        _put(drive.route.locate(stations)[0], letter)
+        _put(study.in_plan(drive.route.locate(stations)[0], drive.route.on), letter)
         speed = 3.6 * float(drive.route.law.speed(0.0))
-        _put(drive.route.points[-1:], ">")
-        legend.append(f"  {letter}  route {name}: {speed:g} km/h, ends at >")
+        _put(study.in_plan(drive.route.points[-1:], drive.route.on), ">")
+        on = "" if drive.route.on is None else f" on {drive.route.on}"
+        legend.append(f"  {letter}  route {name}{on}: {speed:g} km/h, ends at >")
     for i, (name, spot) in enumerate(study.points.items()):
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)
         _put(place, str((i + 1) % 10))

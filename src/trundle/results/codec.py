@@ -24,6 +24,7 @@ from trundle.results.field_kinds import fields_hold
 from trundle.results.kept import read_kept, write_kept
 from trundle.results.kept_index import KeptIndex
 from trundle.results.maps import MapKey, StudyMap
+from trundle.results.mesh_change import MeshChange
 from trundle.results.modes import FirstModes
 from trundle.results.parts import ChangesPart, ExactPart, MapPart, RunsPart
 from trundle.simulate import Coverage, TruncationChange
@@ -35,7 +36,7 @@ _CLASSES: Mapping[str, Callable[..., Any]] = {
     for kind in (
         BandOutcomes, BandSpectra, Cell, CellKey, ChangesPart, ClassMap, Coverage, Criterion,
         ExactPart, ExactStatistics, FirstModes, FitnessWarning, History, KeptIndex, LargestValues,
-        MapKey, MapPart, RunLevels, RunsPart, StudyMap, TruncationChange, Verdict,
+        MapKey, MapPart, MeshChange, RunLevels, RunsPart, StudyMap, TruncationChange, Verdict,
     )
 }  # fmt: skip
 _PLAIN = (str, bool, int, float, type(None))

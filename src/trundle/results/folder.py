@@ -58,6 +58,7 @@ def keep_result(result: StudyResult, folder: Path) -> None:
         cells=len(result.cells),
         maps=len(result.maps),
         modes=result.modes,
+        mesh=result.mesh,
         provenance=result.provenance,
     )
     keep_value(kept / "index", index, _LABEL)
@@ -116,6 +117,7 @@ def read_result(folder: Path, index: KeptIndex, study: Study) -> StudyResult:
         verdicts={cell.key: verdicts for cell, verdicts in cells if verdicts is not None},
         maps=dict(_read(folder, f"map{i:04d}", _MAP) for i in range(index.maps)),
         modes=index.modes,
+        mesh=index.mesh,
         provenance=index.provenance,
     )
 

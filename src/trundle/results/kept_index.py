@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from trundle.results.mesh_change import MeshChange
 from trundle.results.modes import FirstModes
 
 __all__ = ["KeptIndex"]
@@ -26,6 +27,8 @@ class KeptIndex:
         How many are kept.
     modes : FirstModes or None
         Natural modes of the floor, where a method used them.
+    mesh : MeshChange or None
+        What a coarser mesh changes, where that was looked at.
     provenance : mapping of str
         Where the results come from.
     """
@@ -36,4 +39,5 @@ class KeptIndex:
     cells: int
     maps: int
     modes: FirstModes | None
+    mesh: MeshChange | None
     provenance: Mapping[str, str | int | Mapping[str, str]]

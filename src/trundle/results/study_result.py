@@ -14,6 +14,7 @@ from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, few_runs_warnings, level_warnings, size_warnings
 from trundle.results.cells import Cell, CellKey
 from trundle.results.maps import MapKey, StudyMap
+from trundle.results.mesh_change import MeshChange, mesh_warnings
 from trundle.results.modes import FirstModes
 from trundle.simulate import Source
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
@@ -43,6 +44,8 @@ class StudyResult:
         those that its map names.
     modes : FirstModes or None
         Natural modes of the floor, where a method used them.
+    mesh : MeshChange or None
+        What a mesh twice as coarse changes, where that was looked at: of buildings.
     provenance : mapping of str
         Where the result comes from: versions, hashes, seed.
     """
@@ -52,6 +55,7 @@ class StudyResult:
     verdicts: Mapping[CellKey, tuple[Verdict, ...]]
     maps: Mapping[MapKey, StudyMap]
     modes: FirstModes | None
+    mesh: MeshChange | None
     provenance: Mapping[str, Any]
 
     def __repr__(self) -> str:
@@ -103,6 +107,7 @@ class StudyResult:
                 *_map_warnings(self.study, assessment.percentile),
                 *assumption_warnings(self.study),
                 *study_doubts(self.study),
+                *(() if self.mesh is None else mesh_warnings(self.mesh)),
                 *(w for case in self.study.cases for w in early_end_warnings(self.study, case)),
             )
             by_method[assessment.method].update(dict.fromkeys(doubts))

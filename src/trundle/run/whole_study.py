@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
+from dataclasses import replace
 
 from trundle._kinds import kinds_checked
 from trundle._progress import Tell, silent
@@ -22,6 +23,7 @@ from trundle.run.estimate import seconds_of_modes, size_of
 from trundle.run.executor import Batch, Executor, carry_out
 from trundle.run.floors import Floors
 from trundle.run.jobs import Job, plan_jobs, prepare_job
+from trundle.run.mesh_light import mesh_change
 from trundle.run.mode_cache import modes_of
 from trundle.run.progress import Bar
 from trundle.run.tasks import tasks_of
@@ -77,8 +79,16 @@ def run_study(
     ]
     with nullcontext(executor) if executor is not None else Threads() as who:
         carry_out(batches, who, store, Bar(tell, share, costs))
+    result = _result(study, jobs, store, modes)
+    if modes is not None:
+        change = mesh_change(study, result.cells, modes.frequencies, _run, tell)
+        result = replace(result, mesh=change)
     tell("done", 1.0)
-    return _result(study, jobs, store, modes)
+    return result
+
+
+def _run(study: Study, tell: Tell) -> StudyResult:
+    return run_study(study, tell=tell)
 
 
 def _label(job: Job) -> str:
@@ -112,6 +122,7 @@ def _result(
         verdicts=verdicts,
         maps=_in_order(study, maps),
         modes=None if modes is None else first_modes(modes, study.floor),
+        mesh=None,
         provenance=provenance_of(study),
     )
 

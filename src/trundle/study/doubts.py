@@ -15,9 +15,12 @@ from trundle.structure import (
     ELEMENTS_PER_WAVE,
     FloorPlan,
     arching,
+    building_mesh_size,
+    building_resolution,
     resolved_frequency,
     resolving_mesh_size,
 )
+from trundle.structure.building import Building
 from trundle.study.doubts_values import value_doubts
 from trundle.study.model import MethodPlan, Study
 
@@ -39,6 +42,7 @@ def study_doubts(study: Study) -> tuple[FitnessWarning, ...]:
     """
     return (
         *(() if study.plan is None else _of_plan(study, study.plan)),
+        *(() if study.building is None else _of_building(study, study.building)),
         *value_doubts(study),
     )
 
@@ -95,17 +99,30 @@ def _columns_in_a_slab(plan: FloorPlan) -> Iterator[FitnessWarning]:
     )
 
 
+def _of_building(study: Study, building: Building) -> Iterator[FitnessWarning]:
+    """Doubt a mesh that is too coarse, and floors that weigh or span what none does."""
+    plates = [part.section for part in (*building.slabs, *building.ramps)]
+    bands = _bands_assessed(study)
+    reach = building_resolution(plates, study.mesh_size)
+    if plates and len(bands) and bands[-1] > reach:
+        yield _coarse(study, bands, reach, building_mesh_size(plates, float(bands[-1])))
+
+
 def _mesh(study: Study, plan: FloorPlan) -> Iterator[FitnessWarning]:
     """Doubt a mesh that is too coarse for the highest band that is assessed."""
     bands = _bands_assessed(study)
     reach = resolved_frequency(plan, study.mesh_size)
-    if not len(bands) or bands[-1] <= reach:
-        return
+    if len(bands) and bands[-1] > reach:
+        yield _coarse(study, bands, reach, resolving_mesh_size(plan, float(bands[-1])))
+
+
+def _coarse(study: Study, bands: Array, reach: float, enough: float) -> FitnessWarning:
+    """Say up to where a mesh carries bending waves, and which would carry all."""
     top = nominal_frequency(float(bands[-1]))
     fine = bands[bands <= reach]
     lost = f"bands above {nominal_frequency(float(fine[-1])):g} Hz" if len(fine) else "all bands"
-    enough = np.floor(100.0 * resolving_mesh_size(plan, float(bands[-1]))) / 100.0
-    yield FitnessWarning(
+    enough = np.floor(100.0 * enough) / 100.0
+    return FitnessWarning(
         subject="mesh",
         message=f"elements of {study.mesh_size:g} m carry the slab's bending waves to {reach:.3g} "
         f"Hz ({ELEMENTS_PER_WAVE} elements a wave, whose frequency is then 11 % high); bands to "

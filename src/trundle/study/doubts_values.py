@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -10,7 +11,8 @@ import numpy as np
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
 from trundle.signals import Isolator
-from trundle.structure import FloorPlan, Material
+from trundle.structure import FloorPlan, Material, ShellSection
+from trundle.structure.building import Building
 from trundle.study.model import Drive, MethodPlan, Study
 from trundle.study.typical import doubt_of
 from trundle.vehicle import GRAVITY, Vehicle
@@ -39,6 +41,8 @@ def value_doubts(study: Study) -> tuple[FitnessWarning, ...]:
 def _typed(study: Study) -> Typed:
     if study.plan is not None:
         yield from _plan(study.plan)
+    if study.building is not None:
+        yield from _building(study.building)
     for name, vehicle in {d.vehicle.name: d.vehicle for d in study.drives.values()}.items():
         yield from _vehicle(f"vehicle.{name}", vehicle)
     for name, drive in study.drives.items():
@@ -84,6 +88,22 @@ def _plan(plan: FloorPlan) -> Typed:
     for axis in ("x", "y"):
         for gap in np.diff(getattr(plan, f"{axis}_lines")):
             yield f"floor.{axis}_lines, apart", "bay", float(gap)
+
+
+def _building(building: Building) -> Typed:
+    """Give what is plausible or not of slabs, columns and storeys."""
+    for i, slab in enumerate(building.slabs, start=1):
+        yield f"building.slab[{i}].plate, thickness", "slab", slab.section.thickness
+        if isinstance(slab.section, ShellSection):
+            yield from _material(f"building.slab[{i}].plate, material", slab.section.material)
+            more = slab.section.superimposed_mass
+            if more > 0.0:
+                yield f"building.slab[{i}].plate, mass that lies on it", "superimposed mass", more
+    for i, column in enumerate(building.columns, start=1):
+        yield f"building column {i}, width", "column", column.profile.width
+        yield f"building column {i}, depth", "column", column.profile.depth
+    for low, high in pairwise(building.storeys):
+        yield f"storey {high.name!r} above {low.name!r}", "storey", high.level - low.level
 
 
 def _widest(*lines: Array) -> float:

@@ -62,7 +62,7 @@ class MapGrid:
 
     @property
     def xy(self) -> Float[Array, "places 2"]:
-        """Places in plan [m]."""
+        """All places in plan [m]."""
         return np.stack(np.meshgrid(self.x, self.y), axis=-1)[self.there]
 
     def filled(self, values: Float[Array, " places"]) -> Float[Array, "rows columns"]:

@@ -153,6 +153,7 @@ def _draw_members(axes: Axes, building: Building, name: str) -> None:
                 f"{ramp.name}, up",
                 ramp.outline[2:].mean(axis=0),
                 xytext=ramp.outline[:2].mean(axis=0),
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
                 arrowprops={"arrowstyle": "-|>", "color": "#555555"},
                 color="#555555",
                 fontsize=7,
@@ -240,8 +241,8 @@ def _draw_north(axes: Axes, north: float) -> None:
     tip = tail + length * np.array([np.cos(angle), np.sin(angle)])
     axes.annotate(
         "N",
-        (tip[0], tip[1]),
-        xytext=(2.0 * tail[0] - tip[0], 2.0 * tail[1] - tip[1]),
+        (2.0 * tail[0] - tip[0], 2.0 * tail[1] - tip[1]),
+        xytext=(tip[0], tip[1]),
         xycoords="axes fraction",
         textcoords="axes fraction",
         arrowprops={"arrowstyle": "<|-", "color": "black"},
@@ -300,7 +301,7 @@ def _elevation(axes: Axes, building: Building, axis: int) -> None:
     for storey in building.storeys:
         axes.axhline(storey.level, color="#B0B0B0", linewidth=0.5, linestyle=":", zorder=0.5)
         words = f"{storey.name} {storey.level:+g} m"
-        axes.text(right, storey.level, words, ha="right", va="bottom", fontsize=7)
+        axes.text(right, storey.level, f" {words}", ha="left", va="center", fontsize=7)
     axes.set(xlabel=f"{'xy'[axis]} [m]", ylabel="z [m]", title=f"seen along {'yx'[axis]}")
     axes.margins(y=0.12)
     axes.grid(visible=False)
@@ -309,7 +310,11 @@ def _elevation(axes: Axes, building: Building, axis: int) -> None:
 def storey_modes_figure(study: Study, modes: FirstModes) -> Figure:
     """Draw the vertical motion of every storey in the first modes."""
     names, n = list(study.floor.surfaces), min(_MODES, modes.n_modes)
-    figure, panels = new_figure(7.6, 1.0 + 2.0 * len(names), rows=len(names), columns=n)
+    rise = [np.ptp(study.floor.surfaces[name].extent, axis=0) for name in names]
+    heights = [float(np.clip(1.7 * r[1] / r[0], 0.5, 3.0)) + 0.25 for r in rise]
+    figure = Figure(figsize=(7.6, 0.6 + sum(heights)), layout="constrained")
+    grid = figure.subplots(len(names), n, squeeze=False, height_ratios=heights)
+    panels: list[Axes] = list(grid.ravel())
     for row, name in enumerate(names):
         surface = study.floor.surfaces[name]
         faces = _faces([elements for _, elements in surface.parts])

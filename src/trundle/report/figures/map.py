@@ -203,7 +203,12 @@ def _image(panel: Axes, study: Study, view: MapView, values: Array, **look: obje
         **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
     )
     panel.set(xlim=study.extent[0], ylim=study.extent[1], aspect="equal")
-    panel.set_facecolor("#D9D9D9")  # where nothing is assessed
+    grey = ListedColormap(["#D9D9D9"])
+    there = np.where(view.grid.there, 0.0, np.nan)
+    panel.set_facecolor("white")  # where there is no floor
+    panel.pcolormesh(  # where nothing is assessed
+        view.grid.x, view.grid.y, there, shading="nearest", cmap=grey, zorder=0.5, rasterized=True
+    )
     for name in view.routes:
         route = study.drives[name].route
         if route.on != view.grid.on:

@@ -13,6 +13,7 @@ from trundle.report.canvas import Drawing, class_colours
 from trundle.report.figures import building, floor, map, response, road, vehicle
 from trundle.report.html import Picture, embedded, template
 from trundle.report.interactive import plotly_script
+from trundle.results.mesh_change import mesh_words
 from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import Structure, self_weight_deflection
@@ -91,6 +92,7 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         roads=road_words(study),
         matrix=matrix,
         verdict=headline(result),
+        mesh="" if result.mesh is None else mesh_words(result.mesh),
         warnings=result.warnings(),
         provenance=result.provenance,
         frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],

@@ -166,7 +166,7 @@ def quad_locate(corners: Float[Array, "n 4 2"], places: Float[Array, "n 2"]) -> 
         slopes = (0.25 * XI * (1 + eta * ETA), 0.25 * ETA * (1 + xi * XI))
         gap = places - np.einsum("na,naj->nj", shape, corners)
         jacobian = np.stack([np.einsum("na,naj->nj", d, corners) for d in slopes], axis=2)
-        # the map of a convex element folds nowhere in it: who stands on a fold is outside, and stays
+        # a convex element folds nowhere in itself: who stands on a fold is outside, and stays there
         folded = np.abs(np.linalg.det(jacobian)) < _FOLD * np.abs(jacobian).max(axis=(1, 2)) ** 2
         jacobian[folded], gap[folded] = np.eye(2), 0.0
         step = np.linalg.solve(jacobian, gap[:, :, None])[:, :, 0]

@@ -1,0 +1,93 @@
+"""Hold what a mesh twice as coarse changes, and say whether results have settled."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float
+
+from trundle._typing import Array
+from trundle.errors import FitnessWarning
+from trundle.signals import nominal_frequency
+
+__all__ = ["MeshChange", "mesh_warnings", "mesh_words"]
+
+_LEFT = 1.0 / 3.0  # of a change from 2 h to h: the error at h, if it goes with h squared
+_SETTLED_LEVEL = 0.10
+_SETTLED_FREQUENCY = 0.03
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeshChange:
+    """Hold levels and frequencies on a study's mesh, and on one twice as coarse.
+
+    Attributes
+    ----------
+    sizes : tuple of float
+        Largest element edge of the coarse mesh and of the study's own [m].
+    frequencies : ndarray of float, shape (2, n_modes)
+        First natural frequencies on both [Hz].
+    cases, points : tuple of str
+        What drove, and where.
+    bands : ndarray of float, shape (n_bands,)
+        Mid-band frequencies [Hz].
+    levels : ndarray of float, shape (2, n_cases, n_points, n_bands)
+        Root mean square over the same few runs of band levels on both [m/s]; NaN in bands that
+        are not excited, or not resolved.
+    """
+
+    sizes: tuple[float, float]
+    frequencies: Float[Array, "2 modes"]
+    cases: tuple[str, ...]
+    points: tuple[str, ...]
+    bands: Float[Array, " bands"]
+    levels: Float[Array, "2 cases points bands"]
+
+    @property
+    def frequency_change(self) -> float:
+        """Largest change of the first frequencies, as a share."""
+        coarse, fine = self.frequencies
+        return float(np.abs(coarse / fine - 1.0).max(initial=0.0))
+
+    def level_changes(self) -> Float[Array, "cases points bands"]:
+        """Return by what share each level differs; of bands near the loudest of their point."""
+        coarse, fine = self.levels
+        loudest = np.nanmax(fine, axis=2, keepdims=True)
+        matters = fine > 0.1 * loudest  # what is a tenth of the loudest decides nothing
+        return np.where(matters, np.abs(coarse / fine - 1.0), np.nan)
+
+
+def mesh_words(change: MeshChange) -> str:
+    """Say what the coarser mesh changes, and what is left."""
+    coarse, fine = change.sizes
+    levels = change.level_changes()
+    text = (
+        f"from elements of {coarse:g} m to {fine:g} m the first {change.frequencies.shape[1]} "
+        f"frequencies change by up to {100.0 * change.frequency_change:.2g} %"
+    )
+    if np.isfinite(levels).any():
+        case, point, band = np.unravel_index(np.nanargmax(levels), levels.shape)
+        f = nominal_frequency(float(change.bands[band]))
+        text += (
+            f", and band levels by up to {100.0 * np.nanmax(levels):.2g} % "
+            f"({change.cases[case]}, {change.points[point]}, {f:g} Hz)"
+        )
+    return f"{text}; errors go with the size squared, so that about a third of it is left"
+
+
+def mesh_warnings(change: MeshChange) -> tuple[FitnessWarning, ...]:
+    """Return the doubt about results that have not settled on the study's mesh."""
+    levels = change.level_changes()
+    worst = float(np.nanmax(levels)) if np.isfinite(levels).any() else 0.0
+    settled = _LEFT * worst <= _SETTLED_LEVEL
+    if settled and _LEFT * change.frequency_change <= _SETTLED_FREQUENCY:
+        return ()
+    return (
+        FitnessWarning(
+            subject="mesh",
+            message=f"levels have not settled: {mesh_words(change)}; halve mesh_size, or refine "
+            "near routes and points, before a margin below "
+            f"{1.0 + max(_LEFT * worst, 0.1):.2g} is relied on",
+        ),
+    )

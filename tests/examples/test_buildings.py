@@ -14,12 +14,14 @@ SMALL = {
     "car_park": ('mesh_size = "1 m"', 'mesh_size = "2 m"'),
     "steel_floor": ('"0.75 m"', '"1.5 m"'),
     "flat_slab": ('"0.75 m"', '"1.5 m"'),
+    "from_drawing": ('"0.8 m"', '"1.6 m"'),
 }
 SURFACES = {
     "hospital": {"level 1"},
     "car_park": {"deck", "laboratory", "ramp"},
     "steel_floor": {"floor"},
     "flat_slab": {"slab"},
+    "from_drawing": {"floor"},
 }
 
 

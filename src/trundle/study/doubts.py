@@ -44,6 +44,7 @@ def study_doubts(study: Study) -> tuple[FitnessWarning, ...]:
         *(() if study.plan is None else _of_plan(study, study.plan)),
         *(() if study.building is None else _of_building(study, study.building)),
         *value_doubts(study),
+        *study.told,
     )
 
 

@@ -12,7 +12,7 @@ from jaxtyping import Float
 from trundle._html import html_table
 from trundle._typing import Array
 from trundle.criteria import Criterion
-from trundle.errors import InputError
+from trundle.errors import FitnessWarning, InputError
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import ConstantSpeed, Entry, Route
 from trundle.signals import Averaging, Isolation
@@ -186,6 +186,8 @@ class Study:
         The building that it was meshed from, if it was.
     meshing : Meshing or None
         How that was meshed.
+    told : tuple of FitnessWarning
+        What was noticed when files were read: what a drawing shows that was not taken.
     mesh_size : float
         Largest edge of an element [m].
     drives : mapping of str to Drive
@@ -232,6 +234,7 @@ class Study:
     plan: FloorPlan | None
     building: Building | None
     meshing: Meshing | None
+    told: tuple[FitnessWarning, ...]
     mesh_size: float
     drives: Mapping[str, Drive]
     sources: Mapping[str, Source]

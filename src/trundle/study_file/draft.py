@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from trundle.errors import Problem
+from trundle.errors import FitnessWarning, Problem
 from trundle.road import RoughnessBand
 from trundle.signals import Isolation
 from trundle.simulate import Source
@@ -18,7 +18,7 @@ from trundle.study.model import Assessment, Drive, Extent, MethodPlan, extent_of
 from trundle.study_file.document import StudyFile
 from trundle.vehicle import Vehicle
 
-__all__ = ["Draft", "covered", "is_off", "refer", "surface_at", "unique", "unknown"]
+__all__ = ["Draft", "covered", "is_off", "refer", "surface_at", "undrawn", "unique", "unknown"]
 
 _EDGE = 1e-6  # m
 
@@ -59,6 +59,8 @@ class Draft:
         By name.
     assessment : Assessment or None
         What the response is held against.
+    told : tuple of FitnessWarning
+        What was noticed on the way.
     read : mapping of str to bytes
         Content of the files that were read.
     isolations : mapping of str to Isolation
@@ -82,6 +84,7 @@ class Draft:
     band_follows_dt: bool = True
     methods: Mapping[str, MethodPlan] = field(default_factory=dict[str, MethodPlan])
     assessment: Assessment | None = None
+    told: tuple[FitnessWarning, ...] = ()
     read: Mapping[str, bytes] = field(default_factory=dict[str, bytes])
     isolations: Mapping[str, Isolation] = field(default_factory=dict[str, Isolation])
     map: MapPlan | None = None
@@ -187,6 +190,18 @@ def _no_storeys(place: str, on: str | None) -> list[Problem]:
         return []
     rule, remedy = "a [floor] of one storey has no other surface", "remove it"
     return [Problem(place=place, value=repr(on), rule=rule, remedy=remedy)]
+
+
+def undrawn(draft: Draft, kind: str) -> Iterator[Problem]:
+    """Give routes or points that name a layer of a drawing where there is no building to draw."""
+    for i, section in draft.file.lists.get(kind, []):
+        if section.drawn is not None and "building" not in draft.file.given:
+            yield Problem(
+                place=f"{kind}[{i + 1}].drawn",
+                value=repr(section.drawn),
+                rule="a layer is one of [[building.drawing]], and this study has no building",
+                remedy="give path" if kind == "route" else "give at",
+            )
 
 
 def is_off(extent: Extent, place: tuple[float, float]) -> bool:

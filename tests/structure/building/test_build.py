@@ -385,6 +385,36 @@ def test_a_column_takes_the_slab_over_its_cross_section_along():
     assert set(links.leads.tolist()) == {node_at(floor, (4.0, 3.0, 0.0))}
 
 
+def test_columns_above_and_below_a_slab_hold_it_as_one_block():
+    """A thick column below, a thinner one above, and one that touches it: nobody follows two."""
+    storeys = (*LEVELS, Storey(name="up", level=4.0))
+    wide = Profile.rectangle(0.8, 0.8, CONCRETE)
+    house = table(
+        storeys=storeys,
+        slabs=(slab(), slab(on="up")),
+        columns=(
+            *(column(x, y, profile=wide) for x in (1.0, 7.0) for y in (1.0, 5.0)),
+            *(column(x, y, bottom="slab", top="up", base=None) for x in (1.0, 7.0) for y in (1.0, 5.0)),
+            column(1.6, 1.0),
+        ),
+    )  # fmt: skip
+    floor = built(house)
+    (links,) = floor.links
+    assert len(np.unique(links.follows)) == len(links.follows)
+    assert not set(links.leads.tolist()) & set(links.follows.tolist())
+    # nodes of the block at (1, 1) move together: 0.8 m square below, and what touches it
+    block = links.leads == node_leading(floor, (1.0, 1.0, 0.0), links)
+    x = floor.nodes[links.follows[block], 0]
+    assert (x.min(), x.max()) == pytest.approx((0.6, 1.8))
+
+
+def node_leading(floor, place, links):
+    """Whom the node at a place follows; itself, if it leads."""
+    node = node_at(floor, place)
+    behind = np.flatnonzero(links.follows == node)
+    return int(links.leads[behind[0]]) if len(behind) else node
+
+
 # --- ramps and storeys
 
 

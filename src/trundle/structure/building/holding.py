@@ -7,6 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float
+from scipy import sparse
+from scipy.sparse import csgraph
 
 from trundle._typing import Array
 from trundle.structure.building.nodes import Nodes
@@ -139,9 +141,25 @@ def heads(building: Building, mesh: SheetMesh, nodes: Nodes) -> tuple[RigidLinks
             follow = follow[follow != head]
             leads.append(np.full(len(follow), head))
             behind.append(follow)
-    if not sum(map(len, behind)):
+    return _as_blocks(np.concatenate(leads), np.concatenate(behind))
+
+
+def _as_blocks(leads: Array, behind: Array) -> tuple[RigidLinks, ...]:
+    """Return links of which no node follows two: heads that share a node are one block.
+
+    Such are the heads of columns above and below a slab, and of columns that touch.
+    """
+    if not len(behind):
         return ()
-    return (RigidLinks(leads=np.concatenate(leads), follows=np.concatenate(behind)),)
+    nodes, ends = np.unique(np.stack([leads, behind]), return_inverse=True)
+    one, other = ends.reshape(2, -1)
+    n = len(nodes)
+    graph = sparse.coo_array((np.ones(len(one)), (one, other)), shape=(n, n))
+    _, block = csgraph.connected_components(graph, directed=False)
+    first = np.full(int(block.max()) + 1, -1)
+    np.maximum.at(first, block[one], one)  # any of the axes leads
+    follow = np.flatnonzero(first[block] != np.arange(n))
+    return (RigidLinks(leads=nodes[first[block[follow]]], follows=nodes[follow]),)
 
 
 def mirrors(building: Building) -> tuple[MirrorPlane, ...]:

@@ -14,7 +14,16 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.structure.mesh.planar import SNAP
 
-__all__ = ["area_of", "covers", "fault_of", "overlap", "shared_length", "uncovered"]
+__all__ = [
+    "area_of",
+    "box_round",
+    "covers",
+    "fault_of",
+    "overlap",
+    "rings_of",
+    "shared_length",
+    "uncovered",
+]
 
 
 def covers(
@@ -73,3 +82,23 @@ def shared_length(one: Float[Array, "corners 2"], other: Float[Array, "corners 2
         return 0.0
     near = shapely.LineString(other).buffer(SNAP)
     return float(shapely.LineString(one).intersection(near).length)
+
+
+def rings_of(lines: Sequence[Float[Array, "_ 2"]]) -> list[Float[Array, "_ 2"]]:
+    """Return what lines enclose together, by its corners; dead ends enclose nothing."""
+    if not lines:
+        return []
+    drawn = shapely.union_all([shapely.LineString(np.round(line, 4)) for line in lines])
+    rings = shapely.get_parts(shapely.polygonize(list(shapely.get_parts(drawn))))
+    return [shapely.get_coordinates(ring.exterior.simplify(SNAP))[:-1] for ring in rings]
+
+
+def box_round(outline: Float[Array, "corners 2"]) -> tuple[float, float, float]:
+    """Return length, width and direction of the smallest box round an outline [m], [degrees]."""
+    box = shapely.Polygon(outline).minimum_rotated_rectangle
+    corners = shapely.get_coordinates(box)
+    sides = corners[1:3] - corners[:2]
+    lengths = np.linalg.norm(sides, axis=1)
+    along = sides[int(lengths.argmax())]
+    angle = float(np.degrees(np.arctan2(along[1], along[0])))
+    return float(lengths.max()), float(lengths.min()), angle % 180.0

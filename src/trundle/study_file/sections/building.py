@@ -8,12 +8,14 @@ from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticCustomError
 
 from trundle.errors import InputError, Problem
 from trundle.structure import Floor
 from trundle.structure.building import Building, Meshing, build_building, building_problems
 from trundle.structure.mesh import Refinement
+from trundle.study_file.building_drawing import Drawn, drawn_of, line_on, place_on
 from trundle.study_file.building_makes import PlateSection, ProfileSection, materials_of
 from trundle.study_file.building_parts import Origins, parts_of
 from trundle.study_file.draft import Draft
@@ -46,6 +48,15 @@ Corners = Annotated[tuple[GridPlace, ...], Field(min_length=3)]
 Places = Annotated[tuple[GridPlace, ...], Field(min_length=1)]
 Path = Annotated[tuple[GridPlace, ...], Field(min_length=2)]
 Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
+
+
+def _metres(unit: Any) -> float:
+    """Return the size of a drawing's unit [m]."""
+    units = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
+    if unit not in units:
+        rule = f"must be the unit of the drawing: one of {', '.join(units)}"
+        raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+    return units[unit]
 
 
 class MaterialSection(Section):
@@ -190,6 +201,85 @@ class RefineSection(Section):
     reach: PositiveLength = 1.0
 
 
+class DrawnSlabs(Section):
+    """Slabs that a layer outlines."""
+
+    layer: Line
+    plate: Name
+    panel: Flag = False
+
+    def table(self, **drawn: Any) -> SlabSection:
+        """Return the table of one of them."""
+        return SlabSection.model_construct(plate=self.plate, panel=self.panel, **drawn)
+
+
+class DrawnOpenings(Section):
+    """Openings that a layer outlines, in whichever slab they lie."""
+
+    layer: Line
+
+
+class DrawnColumns(Section):
+    """Columns that a layer shows by outlines, circles or points."""
+
+    layer: Line
+    section: Name
+    from_: Annotated[Name, Field(alias="from")]
+    to: Name
+    base: Literal["fixed", "pinned"] | SpringsSection | None = None
+    cap: Literal["fixed", "pinned"] | SpringsSection | None = None
+    head: Literal["rigid", "point"] = "rigid"
+
+    def table(self, **drawn: Any) -> ColumnSection:
+        """Return the table of one of them."""
+        own = {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
+        return ColumnSection.model_construct(**own, **drawn)
+
+
+class DrawnBeams(Section):
+    """Beams along the lines of a layer."""
+
+    layer: Line
+    section: Name
+    below: Flag = True
+    hinged: Literal["none", "start", "end", "both"] = "none"
+
+    def table(self, **drawn: Any) -> BeamSection:
+        """Return the table of one of them."""
+        own = {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
+        return BeamSection.model_construct(**own, **drawn)
+
+
+class DrawnWalls(Section):
+    """Walls along the lines of a layer."""
+
+    layer: Line
+    plate: Name
+    from_: Annotated[Name, Field(alias="from")]
+    to: Name
+    base: Literal["fixed", "pinned"] | LineSpringsSection | None = None
+
+    def table(self, *, along: tuple[tuple[float, float], ...], on: str) -> WallSection:
+        """Return the table of one of them; where it stands is said by its storeys."""
+        del on
+        own = {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
+        return WallSection.model_construct(**own, along=along)
+
+
+class DrawingSection(Section):
+    """A DXF drawing of one storey, and what its layers are."""
+
+    file: Line
+    on: Name
+    unit: Annotated[float | None, BeforeValidator(_metres)] = None
+    origin: Place = (0.0, 0.0)
+    slab: tuple[DrawnSlabs, ...] = ()
+    opening: tuple[DrawnOpenings, ...] = ()
+    column: tuple[DrawnColumns, ...] = ()
+    beam: tuple[DrawnBeams, ...] = ()
+    wall: tuple[DrawnWalls, ...] = ()
+
+
 class BuildingSection(Section):
     """A building of storeys."""
 
@@ -216,6 +306,7 @@ class BuildingSection(Section):
     mass: tuple[MassSection, ...] = ()
     symmetry: tuple[SymmetrySection, ...] = ()
     refine: tuple[RefineSection, ...] = ()
+    drawing: tuple[DrawingSection, ...] = ()
 
 
 BUILDING = SectionKind(name="building", schema=BuildingSection, form="table")
@@ -226,10 +317,24 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     section = draft.file.tables.get("building")
     if section is None:
         return draft, []
-    building, origins, found = parts_of(section, materials_of(section))
+    asked = (one for kind in ("route", "point") for one in draft.file.items(kind))
+    used = {one.drawn for one in asked if one.drawn is not None}
+    drawn, found = drawn_of(section, draft.folder, draft.files, used)
+    if found:
+        return draft, found
+    draft, found = _with_drawn_lines(draft, drawn)
+    names = {
+        one.file: draft.files.get(one.file, draft.folder / one.file) for one in section.drawing
+    }
+    read = {name: path.read_bytes() for name, path in names.items()}
+    draft = replace(draft, read={**draft.read, **read})
+    section = section.model_copy(update=dict(drawn.tables))
+    building, origins, more = parts_of(section, materials_of(section))
+    found += [_as_drawn(problem, drawn) for problem in more]
     if building is None:
         return draft, found
-    found = [_placed(problem, origins) for problem in building_problems(building)]
+    wrong = (_placed(problem, origins) for problem in building_problems(building))
+    found += [_as_drawn(problem, drawn) for problem in wrong]
     found += _too_fine(section, building)
     if found:
         return draft, found
@@ -238,6 +343,45 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     size = float(section.mesh_size)
     draft = replace(draft, building=building, meshing=meshing, model=floor, mesh_size=size)
     return draft, found
+
+
+def _as_drawn(problem: Problem, drawn: Drawn) -> Problem:
+    """Return the problem of a part that was drawn with the place that took it from its drawing."""
+    match = re.match(r"building\.(\w+)\[(\d+)\](.*)", problem.place)
+    where = None if match is None else drawn.places.get((match[1], int(match[2])))
+    if match is None or where is None:
+        return problem
+    return replace(problem, place=f"{where}{match[3]}")
+
+
+def _with_drawn_lines(draft: Draft, drawn: Drawn) -> tuple[Draft, list[Problem]]:
+    """Return the draft with routes and points that drawings show as if they stood in the file."""
+    lists, found = dict(draft.file.lists), list[Problem]()
+    for kind, key, look in (("route", "path", line_on), ("point", "at", place_on)):
+        kept = []
+        for i, section in lists.get(kind, []):
+            if section.drawn is not None:
+                there = look(drawn, section.drawn)
+                if there is None:
+                    found.append(
+                        Problem(
+                            place=f"{kind}[{i + 1}].drawn",
+                            value=repr(section.drawn),
+                            rule="must be a layer of a drawing that shows one "
+                            + ("line" if kind == "route" else "shape"),
+                            remedy=f"there are: {', '.join(sorted(drawn.layers)) or 'none'}",
+                        )
+                    )
+                    continue
+                on, shape = there
+                several = len(draft.file.tables["building"].storey) > 1
+                where = section.on or (on if several else None)
+                kept.append((i, section.model_copy(update={key: shape, "on": where})))
+            else:
+                kept.append((i, section))
+        lists[kind] = kept
+    told = (*draft.told, *drawn.told)
+    return replace(draft, file=replace(draft.file, lists=lists), told=told), found
 
 
 def _floor(building: Building, meshing: Meshing) -> tuple[Floor | None, list[Problem]]:
@@ -266,7 +410,7 @@ def _nothing_to_stand_on() -> Problem:
 
 def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the section."""
-    return {"building": draft.building, "meshing": draft.meshing}
+    return {"building": draft.building, "meshing": draft.meshing, "told": draft.told}
 
 
 def _placed(problem: Problem, origins: Origins) -> Problem:

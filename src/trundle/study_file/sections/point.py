@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from trundle.errors import InputError, Problem
 from trundle.signals import Isolation, Isolator, TransmissibilityTable
 from trundle.structure import Spot, Surface
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, covered, is_off, surface_at, unique
+from trundle.study_file.draft import Draft, covered, is_off, surface_at, undrawn, unique
 from trundle.study_file.fields import (
     Factor,
     Frequency,
+    Line,
     Name,
     Place,
     Ratio,
@@ -39,9 +41,17 @@ class PointSection(Section):
     """A place where the response is read, on the floor or behind an isolator there."""
 
     name: Name
-    at: Place
+    at: Place = (0.0, 0.0)
+    drawn: Line | None = None
     on: Name | None = None
     isolator: IsolatorSection | None = None
+
+    @model_validator(mode="after")
+    def _check_place(self) -> Self:
+        if ("at" in self.model_fields_set) == (self.drawn is not None):
+            rule = "a point has a place, or is drawn on a layer of the building's drawing"
+            raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+        return self
 
 
 POINT = SectionKind(name="point", schema=PointSection, form="list", required=True)
@@ -81,6 +91,7 @@ def _spot(draft: Draft, section: PointSection) -> Spot:
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give points off the floor, and points of one name."""
+    yield from undrawn(draft, "point")
     extent = draft.extent
     for i, section in draft.file.lists.get("point", []):
         surface, mistakes = surface_at(draft, f"point[{i + 1}].on", section.on)

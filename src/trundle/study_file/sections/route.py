@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from trundle.errors import Problem
 from trundle.route import ConstantSpeed, Route
@@ -18,9 +19,19 @@ from trundle.structure import (
 from trundle.study.model import Case, Drive, Extent, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.document import StudyFile
-from trundle.study_file.draft import Draft, covered, is_off, refer, surface_at, unique, unknown
+from trundle.study_file.draft import (
+    Draft,
+    covered,
+    is_off,
+    refer,
+    surface_at,
+    undrawn,
+    unique,
+    unknown,
+)
 from trundle.study_file.fields import (
     GroupName,
+    Line,
     Name,
     NonNegativeLength,
     Place,
@@ -32,6 +43,7 @@ from trundle.study_file.kinds import SectionKind
 __all__ = ["ROUTE", "TRAFFIC", "build", "fields", "problems"]
 
 _EDGE = 1e-6  # m
+_NOWHERE = ((0.0, 0.0), (1.0, 0.0))  # of a route that is drawn, until its drawing is read
 _LOOKED_AT = 0.1  # m along a route
 
 
@@ -40,10 +52,18 @@ class RouteSection(Section):
 
     name: GroupName
     vehicle: Name
-    path: Annotated[tuple[Place, ...], Field(min_length=2)]
+    path: Annotated[tuple[Place, ...], Field(min_length=2)] = _NOWHERE
+    drawn: Line | None = None
     on: Name | None = None
     speed: Speed
     run_in: NonNegativeLength | None = None
+
+    @model_validator(mode="after")
+    def _check_path(self) -> Self:
+        if ("path" in self.model_fields_set) == (self.drawn is not None):
+            rule = "a route has a path, or is drawn on a layer of the building's drawing"
+            raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+        return self
 
 
 class TrafficSection(Section):
@@ -95,6 +115,7 @@ def fields(draft: Draft) -> dict[str, Any]:
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give routes off the floor, along an edge or too short, and traffic of unknown routes."""
+    yield from undrawn(draft, "route")
     yield from _traffic(draft)
     yield from _off_slabs(draft)
     if draft.extent is not None:

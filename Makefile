@@ -68,6 +68,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/long_record.py
 	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/estimate.py
+	$(BIN)/python benchmarks/building.py
 
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs

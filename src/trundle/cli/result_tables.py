@@ -134,8 +134,9 @@ def _print_verdicts(result: StudyResult) -> None:
     if assessment is None:
         return
     title = (
-        f"Verdict on vertical motion at {assessment.percentile:g} % of the runs, averaging "
-        f"{assessment.averaging}; margin = limit / level in the bands computed and excited"
+        f"Verdict on {result.study.motion} motion at {assessment.percentile:g} % of the runs, "
+        f"averaging {assessment.averaging}; margin = limit / level in the bands computed and "
+        "excited"
     )
     for first in range(0, len(columns), _TOGETHER):
         some = slice(first, first + _TOGETHER)

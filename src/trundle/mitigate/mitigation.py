@@ -28,7 +28,7 @@ from trundle.run.jobs import prepare_job
 from trundle.run.mode_cache import modes_of
 from trundle.run.progress import Bar
 from trundle.run.threads import Threads
-from trundle.study.model import Study
+from trundle.study.model import Study, directions
 from trundle.vehicle import Vehicle
 
 __all__ = ["check_changes", "check_speeds", "resonance_speeds", "try_changes"]
@@ -239,6 +239,7 @@ def _of_change(study: Study, one: Combination, label: str, runs: RunsPart) -> li
                 f_resolved=runs.f_resolved,
                 coverage=runs.coverage,
                 events=assessment.events,
+                axes=directions(one.job.points),
             ),
             excited_to=runs.coverage.excited_to,
             warnings=(*runs.doubts(i), *doubts),

@@ -1,6 +1,6 @@
 """Say where vehicles drive, and connect a moving wheel to the floor's dofs."""
 
-from trundle.route.contact import ContactRows, contact_rows
+from trundle.route.contact import ContactRows, contact_rows, level_rows
 from trundle.route.entry import Abrupt, DriveIn, Entry, Ramp, StaticStart, entry_named
 from trundle.route.path import ConstantSpeed, Route, SpeedLaw, SteadyAcceleration
 from trundle.route.track import Along, Track, follow
@@ -21,4 +21,5 @@ __all__ = [
     "contact_rows",
     "entry_named",
     "follow",
+    "level_rows",
 ]

@@ -7,15 +7,16 @@ wheel feels, and the reading of a response at a point.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
-from trundle.structure import ContactShape, Structure, Surface
+from trundle.structure import ContactShape, Hat, Structure, Surface
 
-__all__ = ["ContactRows", "contact_rows"]
+__all__ = ["ContactRows", "contact_rows", "level_rows"]
 
 _ON_PLANE = 1e-6  # m, and sine of the angle to a mirror plane
 
@@ -148,6 +149,46 @@ def contact_rows(
         load_share=_load_share(floor, surface, places, directions),
         n_dofs=floor.n_dofs,
     )
+
+
+def level_rows(
+    floor: Structure, places: Float[Array, "n 2"], axis: Literal["x", "y"], *, on: str | None = None
+) -> SparseMatrix:
+    """Form rows that read the motion along a level axis of the plan at places, (n, n_dofs).
+
+    Between nodes it runs straight, as the motion of elements in their plane does.
+
+    Parameters
+    ----------
+    floor : Structure
+        The structure.
+    places : ndarray of float, shape (n, 2)
+        Places on the surface [m].
+    axis : {"x", "y"}
+        Which axis.
+    on : str, optional
+        Name of the surface; the only one unless given.
+
+    Raises
+    ------
+    InputError
+        A place off the surface.
+    """
+    surface, dof = floor.surface(on), "xy".index(axis)
+    rows, columns, values = [], [], []
+    for part, found, elements, local in surface.find(places):
+        weights, _ = part.group.weights(local, part.corners[elements], Hat())
+        # of deflections and two rotations a node, the first alone has a weight
+        value = weights.reshape(len(found), -1, 3)[:, :, 0]
+        at = _numbers(floor)[part.elements[elements]][:, :, dof]
+        free = at >= 0
+        rows.append(np.broadcast_to(found[:, None], at.shape)[free])
+        columns.append(at[free])
+        values.append(value[free])
+    n = floor.n_dofs if floor.expansion is None else floor.expansion.shape[0]
+    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    found = sparse.coo_array(entries, shape=(len(places), n)).tocsr()
+    return found if floor.expansion is None else (found @ floor.expansion).tocsr()
 
 
 def _numbers(floor: Structure) -> Int[Array, "nodes 6"]:

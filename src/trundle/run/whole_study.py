@@ -183,4 +183,5 @@ def _assess(study: Study, cell: Cell) -> tuple[Verdict, ...]:
         f_resolved=cell.f_resolved,
         coverage=cell.coverage,
         events=study.assessment.events,
+        axes=study.point_ways,
     )

@@ -14,7 +14,7 @@ from trundle._kinds import kinds_checked
 from trundle._typing import SparseMatrix
 from trundle.dynamics import ModalRatio
 from trundle.errors import InputError
-from trundle.route import contact_rows
+from trundle.route import contact_rows, level_rows
 from trundle.simulate.fitness import fitness_warnings
 from trundle.simulate.ground import Integration, PreparedFloor
 from trundle.simulate.interaction import Decoupled, Interaction
@@ -118,16 +118,18 @@ def point_rows(floor: Structure, points: Mapping[str, Place]) -> SparseMatrix:
 
 def spot_rows(floor: Structure, spots: Spots) -> SparseMatrix:
     """Return rows of weights that read the response at places of one surface."""
+    if spots.axis != "z":
+        return level_rows(floor, spots.xy, spots.axis, on=spots.on)
     along_x = np.broadcast_to([1.0, 0.0], spots.xy.shape)
     rows = contact_rows(floor, spots.xy, along_x, shape=Hermite(), on=spots.on)
     return rows.matrix(rows.value)
 
 
 def _by_surface(points: Mapping[str, Place]) -> Iterator[Spots]:
-    """Give points in their order, those that follow each other on one surface together."""
+    """Give points in their order, those that follow each other on one surface and axis together."""
     spots = [place if isinstance(place, Spot) else Spot(*place) for place in points.values()]
-    for on, some in itertools.groupby(spots, key=lambda spot: spot.on):
-        yield Spots(xy=np.array([(spot.x, spot.y) for spot in some]), on=on)
+    for (on, axis), some in itertools.groupby(spots, key=lambda spot: (spot.on, spot.axis)):
+        yield Spots(xy=np.array([(spot.x, spot.y) for spot in some]), on=on, axis=axis)
 
 
 def _check_vehicles(sources: tuple[Source, ...], integration: Integration) -> None:

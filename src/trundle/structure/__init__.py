@@ -52,7 +52,7 @@ from trundle.structure.smeared import (
     waffle_slab,
 )
 from trundle.structure.statics import self_weight_deflection
-from trundle.structure.surface import Frame, Spot, Spots, Surface
+from trundle.structure.surface import Axis, Frame, Spot, Spots, Surface
 
 __all__ = [
     "CONCRETE",
@@ -60,6 +60,7 @@ __all__ = [
     "EDGES",
     "ELEMENTS_PER_WAVE",
     "STEEL",
+    "Axis",
     "BeamGroup",
     "BeamSection",
     "ContactShape",

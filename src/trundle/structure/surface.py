@@ -10,17 +10,30 @@ import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy.spatial import cKDTree
 
-from trundle._checks import finite, frozen_array, set_frozen
+from trundle._checks import finite, frozen_array, one_of, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.elements import Elements, Located, Standable
 
-__all__ = ["Frame", "Spot", "Spots", "Surface", "check_names", "found_surface", "named_surface"]
+__all__ = [
+    "Axis",
+    "Frame",
+    "Spot",
+    "Spots",
+    "Surface",
+    "check_names",
+    "found_surface",
+    "named_surface",
+]
+
+Axis: TypeAlias = Literal["z", "x", "y"]
+"""Along the normal of a surface, or level along an axis of the plan."""
 
 _CANDIDATES = 12
 _BLOCK = 20_000  # places looked up at once, to bound memory
@@ -38,15 +51,19 @@ class Spot:
         Coordinates in the surface's frame [m].
     on : str or None
         Name of the surface; None where a structure has only one.
+    axis : {"z", "x", "y"}
+        Which motion is read there: along the surface's normal, or level, along an axis of the plan.
     """
 
     x: float
     y: float
     on: str | None = None
+    axis: Axis = "z"
 
     def __post_init__(self) -> None:
-        """Check both coordinates."""
+        """Check both coordinates and the axis."""
         set_frozen(self, x=finite("x", self.x), y=finite("y", self.y))
+        one_of("axis", self.axis, get_args(Axis))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,10 +76,13 @@ class Spots:
         Coordinates in the surface's frame [m].
     on : str or None
         Name of the surface; None where a structure has only one.
+    axis : {"z", "x", "y"}
+        Which motion is read there, see `Spot`.
     """
 
     xy: Float[Array, "spots 2"]
     on: str | None = None
+    axis: Axis = "z"
 
     def __post_init__(self) -> None:
         """Freeze the coordinates."""

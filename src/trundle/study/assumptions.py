@@ -19,12 +19,7 @@ def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
     apart press with up to 3 dB less than one track under both; a mirror image of the vehicle
     beyond a plane of symmetry changes levels by 0.9 to 1.4 times.
     """
-    found = [
-        FitnessWarning(
-            subject="axis",
-            message="only vertical motion is computed; curves for each axis hold for it alone",
-        )
-    ]
+    found = [FitnessWarning(subject="axis", message=_axis_words(study))]
     if any(np.ptp(drive.vehicle.lateral) == 0.0 for drive in study.drives.values()):
         found.append(
             FitnessWarning(
@@ -43,6 +38,16 @@ def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
         )
     found += _points_on_beams(study)
     return tuple(found)
+
+
+def _axis_words(study: Study) -> str:
+    """Say which motions are computed, and of what."""
+    if study.point_ways is None:
+        return "only vertical motion is computed; curves for each axis hold for it alone"
+    return (
+        "level motion is that of vertical wheel loads alone: braking, steering and wind are not in "
+        "it; points whose names end with x or y read it, and curves for each axis hold for each"
+    )
 
 
 def _points_on_beams(study: Study) -> list[FitnessWarning]:

@@ -35,6 +35,7 @@ __all__ = [
     "Printed",
     "PrintedBound",
     "Study",
+    "directions",
     "extent_of",
 ]
 
@@ -49,6 +50,13 @@ def extent_of(floor: Structure) -> Extent:
     low = np.min([one for one, _ in both], axis=0)
     high = np.max([one for _, one in both], axis=0)
     return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
+
+
+def directions(points: Mapping[str, Spot]) -> tuple[str, ...] | None:
+    """Return whether each point's motion is vertical or horizontal; None where all are vertical."""
+    if all(spot.axis == "z" for spot in points.values()):
+        return None
+    return tuple("vertical" if s.axis == "z" else "horizontal" for s in points.values())
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -284,6 +292,18 @@ class Study:
         if self.plan is not None:
             return self.plan.x_extent, self.plan.y_extent
         return extent_of(self.floor)
+
+    @property
+    def point_ways(self) -> tuple[str, ...] | None:
+        """Directions of points for `assess_reduced`; None where all are vertical."""
+        return directions(self.points)
+
+    @property
+    def motion(self) -> str:
+        """Motions that points read, in words."""
+        axes = dict.fromkeys(spot.axis for spot in self.points.values())
+        words = {"z": "vertical", "x": "along x", "y": "along y"}
+        return ", ".join(words[axis] for axis in axes)
 
     @property
     def storeys(self) -> tuple[str | None, ...]:

@@ -12,7 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from trundle.errors import InputError, Problem
 from trundle.signals import Isolation, Isolator, TransmissibilityTable
-from trundle.structure import Spot, Surface
+from trundle.structure import Axis, Spot, Surface
 from trundle.study_file.attempt import attempted
 from trundle.study_file.draft import Draft, covered, is_off, surface_at, undrawn, unique
 from trundle.study_file.fields import (
@@ -44,6 +44,7 @@ class PointSection(Section):
     at: Place = (0.0, 0.0)
     drawn: Line | None = None
     on: Name | None = None
+    axes: Annotated[tuple[Axis, ...], Field(min_length=1)] = ("z",)
     isolator: IsolatorSection | None = None
 
     @model_validator(mode="after")
@@ -75,18 +76,27 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
 def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the section."""
     return {
-        "points": {p.name: _spot(draft, p) for p in draft.file.items("point")},
+        "points": {
+            named(p, axis): _spot(draft, p, axis)
+            for p in draft.file.items("point")
+            for axis in p.axes
+        },
         "isolations": draft.isolations,
     }
 
 
-def _spot(draft: Draft, section: PointSection) -> Spot:
+def named(section: PointSection, axis: Axis) -> str:
+    """Return what a point's motion along an axis is called: by the point alone for the vertical."""
+    return section.name if axis == "z" else f"{section.name} {axis}"
+
+
+def _spot(draft: Draft, section: PointSection, axis: Axis) -> Spot:
     """Return where a point is, in its surface."""
     surface, _ = surface_at(draft, "", section.on)
     if surface is None:
         return Spot(*section.at)
     x, y = surface.frame.from_plan(np.array([section.at]))[0]
-    return Spot(float(x), float(y), section.on)
+    return Spot(float(x), float(y), section.on, axis)
 
 
 def problems(draft: Draft) -> Iterator[Problem]:
@@ -96,6 +106,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
     for i, section in draft.file.lists.get("point", []):
         surface, mistakes = surface_at(draft, f"point[{i + 1}].on", section.on)
         yield from mistakes
+        yield from _level(draft, f"point[{i + 1}].axes", section)
         if extent is not None and is_off(extent, section.at):
             yield Problem(
                 place=f"point[{i + 1}].at",
@@ -110,7 +121,29 @@ def problems(draft: Draft) -> Iterator[Problem]:
                 rule=f"a point must lie on a slab, and {surface.name!r} has none there",
                 remedy="move it off the opening, or name another storey: on = ...",
             )
-    yield from unique("point", [s.name for s in draft.file.items("point")])
+    names = (named(s, axis) for s in draft.file.items("point") for axis in s.axes)
+    yield from unique("point", names)
+
+
+def _level(draft: Draft, place: str, section: PointSection) -> Iterator[Problem]:
+    """Give points that are read along level axes where that says nothing."""
+    if set(section.axes) == {"z"}:
+        return
+    if draft.building is None and "building" not in draft.file.given:
+        yield Problem(
+            place=place,
+            value=", ".join(section.axes),
+            rule="a storey whose columns end fixed does not sway as its building does: a [floor] "
+            "is vertical only",
+            remedy='model the [building], or read axes = ["z"]',
+        )
+    elif section.isolator is not None:
+        yield Problem(
+            place=place,
+            value=", ".join(section.axes),
+            rule="an isolator is known for vertical motion alone",
+            remedy='read axes = ["z"] behind it, and the floor by a point of its own',
+        )
 
 
 def _is_on(surface: Surface, at: tuple[float, float]) -> bool:

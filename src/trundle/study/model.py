@@ -295,12 +295,12 @@ class Study:
 
     @property
     def point_ways(self) -> tuple[str, ...] | None:
-        """Directions of points for `assess_reduced`; None where all are vertical."""
+        """Whether each point is vertical or horizontal; None where all are vertical."""
         return directions(self.points)
 
     @property
     def motion(self) -> str:
-        """Motions that points read, in words."""
+        """What points read, in words."""
         axes = dict.fromkeys(spot.axis for spot in self.points.values())
         words = {"z": "vertical", "x": "along x", "y": "along y"}
         return ", ".join(words[axis] for axis in axes)

@@ -203,12 +203,9 @@ def _image(panel: Axes, study: Study, view: MapView, values: Array, **look: obje
         **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
     )
     panel.set(xlim=study.extent[0], ylim=study.extent[1], aspect="equal")
-    grey = ListedColormap(["#D9D9D9"])
-    there = np.where(view.grid.there, 0.0, np.nan)
-    panel.set_facecolor("white")  # where there is no floor
-    panel.pcolormesh(  # where nothing is assessed
-        view.grid.x, view.grid.y, there, shading="nearest", cmap=grey, zorder=0.5, rasterized=True
-    )
+    panel.set_facecolor("#D9D9D9")  # where nothing is assessed
+    if not view.grid.there.all():
+        _draw_nothing(panel, view)
     for name in view.routes:
         route = study.drives[name].route
         if route.on != view.grid.on:
@@ -245,3 +242,17 @@ def _draw_building(panel: Axes, building: Building, on: str) -> None:
     for column in building.columns:
         if on in levels & {s.name for s in building.between(column.bottom, column.top)}:
             panel.add_patch(Polygon(column.footprint, facecolor=COLOURS[7]))
+
+
+def _draw_nothing(panel: Axes, view: MapView) -> None:
+    """Leave white where there is no floor, for grey is where nothing is assessed."""
+    panel.set_facecolor("white")
+    panel.pcolormesh(
+        view.grid.x,
+        view.grid.y,
+        np.where(view.grid.there, 0.0, np.nan),
+        shading="nearest",
+        cmap=ListedColormap(["#D9D9D9"]),
+        zorder=0.5,
+        rasterized=True,
+    )

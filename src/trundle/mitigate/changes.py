@@ -10,7 +10,8 @@ from trundle.dynamics import ModalRatio
 from trundle.errors import InputError
 from trundle.signals import Isolation
 from trundle.structure import build_floor
-from trundle.study.model import MethodPlan, Study
+from trundle.study.model import Study
+from trundle.study.plans import MethodPlan
 from trundle.vehicle import Vehicle
 
 __all__ = ["AS_IT_IS", "Change", "changed_study", "each_change", "every_combination"]

@@ -11,7 +11,8 @@ from trundle.mitigate.changes import Change, changed_study
 from trundle.mitigate.tasks import ChangesTask
 from trundle.road import RoadClass
 from trundle.run.jobs import Job, plan_jobs
-from trundle.study.model import Assessment, Case, MethodPlan, Study
+from trundle.study.model import Study
+from trundle.study.plans import Assessment, Case, MethodPlan
 
 __all__ = ["Combination", "assessed", "plan_changes", "sharing_runs"]
 

@@ -9,7 +9,7 @@ from trundle.run.jobs import Job
 from trundle.simulate import PreparedFloor, StaticFlexibility, prepare
 from trundle.simulate.wheels.standing import route_dofs
 from trundle.structure import Structure
-from trundle.study.model import MethodPlan
+from trundle.study.plans import MethodPlan
 
 __all__ = ["Floors"]
 

@@ -24,7 +24,8 @@ from trundle.simulate import (
 from trundle.simulate.ensembles import runs_at_once
 from trundle.structure import Spot
 from trundle.study.map_plan import MapPlan
-from trundle.study.model import Case, MethodPlan, Study
+from trundle.study.model import Study
+from trundle.study.plans import Case, MethodPlan
 
 __all__ = ["Job", "PreparedJob", "plan_jobs", "prepare_job"]
 

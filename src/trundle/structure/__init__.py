@@ -18,6 +18,7 @@ from trundle.structure.elements import (
 from trundle.structure.floor import DOF_NAMES, Floor
 from trundle.structure.links import RigidLinks
 from trundle.structure.model import MirrorPlane, Structure, node_motion
+from trundle.structure.places import Axis, Frame, Spot, Spots
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.plates import OrthotropicSection
 from trundle.structure.profiles import (
@@ -52,7 +53,7 @@ from trundle.structure.smeared import (
     waffle_slab,
 )
 from trundle.structure.statics import self_weight_deflection
-from trundle.structure.surface import Axis, Frame, Spot, Spots, Surface
+from trundle.structure.surface import Surface
 
 __all__ = [
     "CONCRETE",

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from trundle.errors import FitnessWarning
-from trundle.study.model import Case, Study
+from trundle.study.model import Study
+from trundle.study.plans import Case
 
 __all__ = ["assumption_warnings", "early_end_warnings"]
 

@@ -22,7 +22,8 @@ from trundle.structure import (
 )
 from trundle.structure.building import Building
 from trundle.study.doubts_values import value_doubts
-from trundle.study.model import MethodPlan, Study
+from trundle.study.model import Study
+from trundle.study.plans import MethodPlan
 
 __all__ = ["study_doubts"]
 

@@ -13,7 +13,8 @@ from trundle.errors import FitnessWarning
 from trundle.signals import Isolator
 from trundle.structure import FloorPlan, Material, ShellSection
 from trundle.structure.building import Building
-from trundle.study.model import Drive, MethodPlan, Study
+from trundle.study.model import Study
+from trundle.study.plans import Drive, MethodPlan
 from trundle.study.typical import doubt_of
 from trundle.vehicle import GRAVITY, Vehicle
 

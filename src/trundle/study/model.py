@@ -14,26 +14,19 @@ from trundle._typing import Array
 from trundle.criteria import Criterion
 from trundle.errors import FitnessWarning, InputError
 from trundle.road import RoadClass, RoughnessBand
-from trundle.route import ConstantSpeed, Entry, Route
-from trundle.signals import Averaging, Isolation
-from trundle.simulate import Crossing, Interaction
+from trundle.route import ConstantSpeed
+from trundle.signals import Isolation
+from trundle.simulate import Crossing
 from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import as_sources
 from trundle.simulate.sources.source import Source
 from trundle.structure import FloorPlan, Spot, Structure, build_floor
 from trundle.structure.building import Building, Meshing, build_building
 from trundle.study.map_plan import MapPlan
-from trundle.vehicle import Vehicle
+from trundle.study.plans import Assessment, Case, Drive, MethodPlan, Note, Printed, PrintedBound
 
 __all__ = [
-    "Assessment",
-    "Case",
-    "Drive",
     "Extent",
-    "MethodPlan",
-    "Note",
-    "Printed",
-    "PrintedBound",
     "Study",
     "directions",
     "extent_of",
@@ -57,118 +50,6 @@ def directions(points: Mapping[str, Spot]) -> tuple[str, ...] | None:
     if all(spot.axis == "z" for spot in points.values()):
         return None
     return tuple("vertical" if s.axis == "z" else "horizontal" for s in points.values())
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Drive:
-    """Hold a route with the vehicle that drives it.
-
-    Attributes
-    ----------
-    route : Route
-        Where and how fast.
-    vehicle : Vehicle
-        What drives.
-    run_in : float or None
-        Distance driven before the floor [m], see `trundle.simulate.Crossing`.
-    """
-
-    route: Route
-    vehicle: Vehicle
-    run_in: float | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class Case:
-    """Hold what acts at once: one route or other source, or several.
-
-    Attributes
-    ----------
-    name : str
-        Name of the route or source, or of the traffic.
-    routes : tuple of str
-        Names of what acts together.
-    """
-
-    name: str
-    routes: tuple[str, ...]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MethodPlan:
-    """Hold a method with the entry that goes with it.
-
-    Attributes
-    ----------
-    name : str
-        Name in the study.
-    interaction : Decoupled or Coupled
-        The method.
-    entry : Ramp, DriveIn, StaticStart or Abrupt
-        How wheels come onto the floor.
-    band : RoughnessBand or None
-        Waves of its own; those of the study unless given.
-    """
-
-    name: str
-    interaction: Interaction
-    entry: Entry
-    band: RoughnessBand | None = None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Assessment:
-    """Hold what the response is held against.
-
-    Attributes
-    ----------
-    criteria : tuple of Criterion
-        The curves.
-    method : str
-        Name of the method whose result is assessed.
-    percentile : float
-        Share of runs that a level must cover, 0 to 100.
-    averaging : {"max_1s", "slow", "fast", "event"}
-        Averaging rule of band levels.
-    events : float
-        How many passages a vibration dose is for.
-    """
-
-    criteria: tuple[Criterion, ...]
-    method: str
-    percentile: float
-    averaging: Averaging
-    events: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Printed:
-    """Hold published values of one cell: peak acceleration [m/s2] and RMS velocity [m/s]."""
-
-    case: str
-    road: str
-    method: str
-    peak_acceleration: float
-    rms_velocity: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class PrintedBound:
-    """Hold published upper bounds: peak acceleration [m/s2] and RMS velocity [m/s]."""
-
-    bound: str
-    road: str
-    method: str
-    peak_acceleration: float
-    rms_velocity: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class Note:
-    """Hold a note for the report."""
-
-    title: str
-    text: str
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

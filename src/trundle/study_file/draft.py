@@ -14,7 +14,8 @@ from trundle.simulate import Source
 from trundle.structure import FloorPlan, Structure, Surface
 from trundle.structure.building import Building, Meshing
 from trundle.study.map_plan import MapPlan
-from trundle.study.model import Assessment, Drive, Extent, MethodPlan, extent_of
+from trundle.study.model import Extent, extent_of
+from trundle.study.plans import Assessment, Drive, MethodPlan
 from trundle.study_file.document import StudyFile
 from trundle.vehicle import Vehicle
 

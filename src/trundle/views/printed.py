@@ -9,7 +9,7 @@ import numpy as np
 from trundle.response import percentile_rank, upper_bounds
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
-from trundle.study.model import PrintedBound
+from trundle.study.plans import PrintedBound
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 from trundle.views.words import Range, spread
 

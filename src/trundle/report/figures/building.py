@@ -111,8 +111,7 @@ def _range(building: Building, name: str) -> tuple[Array, Array]:
 
 def _area(slab: Slab) -> PathPatch:
     """Return a slab with its openings cut out."""
-    rings = [slab.outline, *(opening for opening in slab.openings)]
-    rings = [_turned(rings[0], 1.0), *(_turned(ring, -1.0) for ring in rings[1:])]
+    rings = [_turned(slab.outline, 1.0), *(_turned(hole, -1.0) for hole in slab.openings)]
     places = np.concatenate([np.vstack([ring, ring[:1]]) for ring in rings])
     codes = [
         code

@@ -13,7 +13,7 @@ from trundle.criteria import Criterion
 from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
-from trundle.study.model import Assessment
+from trundle.study.plans import Assessment
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 from trundle.views.printed import ComparisonRow, comparison_rows
 from trundle.views.words import rule_name

@@ -2,21 +2,8 @@
 
 from trundle.structure.building.build import Meshing, build_building, mesh_building
 from trundle.structure.building.checks import building_problems
-from trundle.structure.building.parts import (
-    Base,
-    Beam,
-    Brace,
-    Building,
-    Column,
-    Mass,
-    Ramp,
-    Slab,
-    Springs,
-    Storey,
-    Support,
-    SymmetryPlane,
-    Wall,
-)
+from trundle.structure.building.held import Base, Mass, Springs, Support, SymmetryPlane
+from trundle.structure.building.parts import Beam, Brace, Building, Column, Ramp, Slab, Storey, Wall
 from trundle.structure.building.profile import Profile
 
 __all__ = [

@@ -31,7 +31,8 @@ from trundle.structure.mechanisms import loose_parts
 from trundle.structure.mesh.mesher import mesh_sheets
 from trundle.structure.mesh.sheet import Refinement
 from trundle.structure.mesh.sheet_mesh import SheetMesh
-from trundle.structure.surface import Frame, Surface
+from trundle.structure.places import Frame
+from trundle.structure.surface import Surface
 
 __all__ = ["Meshing", "build_building", "mesh_building"]
 

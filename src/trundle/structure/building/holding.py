@@ -11,8 +11,9 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from trundle._typing import Array
+from trundle.structure.building.held import Base
 from trundle.structure.building.nodes import Nodes
-from trundle.structure.building.parts import Base, Building
+from trundle.structure.building.parts import Building
 from trundle.structure.building.sheets import passes
 from trundle.structure.elements import GROUND, PointMasses, SpringGroup
 from trundle.structure.links import RigidLinks

@@ -12,8 +12,9 @@ from jaxtyping import Bool, Float, Int
 
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.structure.building.held import SymmetryPlane
 from trundle.structure.building.nodes import Nodes
-from trundle.structure.building.parts import Beam, Building, SymmetryPlane, Wall
+from trundle.structure.building.parts import Beam, Building, Wall
 from trundle.structure.building.profile import Profile
 from trundle.structure.building.sheets import passes
 from trundle.structure.elements import BeamGroup, ReleasedBeams

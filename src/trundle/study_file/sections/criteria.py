@@ -11,7 +11,7 @@ from pydantic import Field
 from trundle.criteria import Criterion, find_criterion, shaped
 from trundle.errors import InputError, Problem
 from trundle.signals import TOP_FREQUENCY
-from trundle.study.model import Assessment, MethodPlan
+from trundle.study.plans import Assessment, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import Draft, refer

@@ -11,7 +11,7 @@ from trundle.errors import Problem
 from trundle.road import RoadClass
 from trundle.simulate import Crossing
 from trundle.simulate.ensembles import LEAST_BATCH
-from trundle.study.model import Drive, MethodPlan
+from trundle.study.plans import Drive, MethodPlan
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import Draft
 from trundle.study_file.fields import (

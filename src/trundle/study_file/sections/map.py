@@ -15,7 +15,8 @@ from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.structure import FloorPlan, Surface, mesh_lines
 from trundle.study.map_plan import MapGrid, MapPlan, map_places
-from trundle.study.model import Assessment, Drive, Extent, MethodPlan
+from trundle.study.model import Extent
+from trundle.study.plans import Assessment, Drive, MethodPlan
 from trundle.study_file.draft import Draft, surface_at
 from trundle.study_file.fields import (
     Flag,

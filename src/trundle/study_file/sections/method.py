@@ -13,7 +13,7 @@ from trundle.route import entry_named
 from trundle.simulate import Coupled, Decoupled, Integration, Modal, Newmark
 from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import Hat, Hermite
-from trundle.study.model import Drive, MethodPlan
+from trundle.study.plans import Drive, MethodPlan
 from trundle.study_file.attempt import attempt
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import Draft, unique

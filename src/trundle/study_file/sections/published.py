@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field
 
 from trundle.errors import Problem
-from trundle.study.model import Note, Printed, PrintedBound
+from trundle.study.plans import Note, Printed, PrintedBound
 from trundle.study_file.draft import Draft, refer
 from trundle.study_file.fields import (
     Acceleration,

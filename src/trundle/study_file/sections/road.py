@@ -11,7 +11,7 @@ from pydantic import Field
 from trundle._words import in_kmh
 from trundle.errors import Problem
 from trundle.road import RoadClass, RoughnessBand
-from trundle.study.model import Drive, MethodPlan
+from trundle.study.plans import Drive, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.draft import Draft, unique
 from trundle.study_file.fields import (

@@ -16,7 +16,8 @@ from trundle.route import ConstantSpeed, Route
 from trundle.structure import (
     FloorPlan,
 )
-from trundle.study.model import Case, Drive, Extent, MethodPlan
+from trundle.study.model import Extent
+from trundle.study.plans import Case, Drive, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import (

@@ -6,12 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from trundle._typing import Array
 from trundle.structure.elements import GROUND, SpringGroup
 from trundle.structure.floor import Floor
+from trundle.structure.mesh.merging import linked
 
 __all__ = ["loose_parts"]
 
@@ -53,9 +52,7 @@ def _parts(floor: Floor) -> Int[Array, " nodes"]:
         some = [ends[:, [0, i]] for i in range(1, ends.shape[1])]
         pairs += [pair[(pair != GROUND).all(axis=1)] for pair in some]
     both = np.concatenate([np.zeros((0, 2), dtype=np.intp), *pairs])
-    graph = sparse.coo_array((np.ones(len(both)), both.T), shape=(n, n))
-    _, part = csgraph.connected_components(graph, directed=False)
-    _, number = np.unique(part[used], return_inverse=True)
+    _, number = np.unique(linked(both, n)[used], return_inverse=True)
     out = np.full(n, -1, dtype=np.intp)
     out[used] = number
     return out

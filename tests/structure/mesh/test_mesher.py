@@ -4,11 +4,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trundle.errors import InputError
 from trundle.structure.mesh import Area, Refinement, Sheet, Tie, mesh_sheets
+from trundle.structure.mesh.free import FreeFace, triangles_of
+from trundle.structure.mesh.merging import first_there
+from trundle.structure.mesh.quality import squareness
+from trundle.structure.mesh.smoothing import smoothed
 
 
 def box(x0, y0, x1, y1):
@@ -190,6 +195,17 @@ def test_nothing_to_mesh_is_said():
         mesh_sheets([Sheet(name="empty")], size=1.0)
 
 
+def one_whole(mesh, area, around, gap=1e-6):
+    """Areas add up, and what has one neighbour alone is the boundary: there is no crack."""
+    areas = np.concatenate([area_of(mesh, mesh.quads), area_of(mesh, mesh.triangles)])
+    assert areas.min() > 0.0
+    assert areas.sum() == pytest.approx(area, rel=gap)
+    sides, times = sides_of(mesh)
+    assert times.max() == 2
+    lengths = np.linalg.norm(np.diff(mesh.nodes[sides[times == 1]], axis=1)[:, 0], axis=1)
+    assert lengths.sum() == pytest.approx(around, rel=gap)
+
+
 @st.composite
 def plans(draw):
     """A turned rectangle with a hole, columns and beams anywhere in it."""
@@ -217,14 +233,101 @@ def test_any_plan_is_covered_by_sound_elements(plan):
         areas=(Area(outline=outline @ turn, openings=(opening @ turn,) if hole else ()),),
         lines=tuple(line @ turn for line in (*heads, *lines)),
     )
-    mesh = mesh_sheets([sheet], size=h)
     area, around = np.prod(size), 2.0 * size.sum()
     if hole:
         area, around = area * 0.97, around + 2.0 * (0.2 * size[0] + 0.15 * size[1])
-    areas = np.concatenate([area_of(mesh, mesh.quads), area_of(mesh, mesh.triangles)])
-    assert areas.min() > 0.0
-    assert areas.sum() == pytest.approx(area, rel=1e-6)
-    sides, times = sides_of(mesh)
-    assert times.max() == 2
-    lengths = np.linalg.norm(np.diff(mesh.nodes[sides[times == 1]], axis=1)[:, 0], axis=1)
-    assert lengths.sum() == pytest.approx(around, rel=1e-6)
+    one_whole(mesh_sheets([sheet], size=h), area, around)
+
+
+@st.composite
+def nearly_touching(draw):
+    """Lines that run beside each other, or end short of each other, by millimetres to decimetres."""
+    w, d, h = draw(st.floats(5.0, 30.0)), draw(st.floats(5.0, 30.0)), draw(st.floats(0.4, 2.5))
+    share, gap = st.floats(0.05, 0.95), st.sampled_from([0.0, 1e-3, 2e-3, 5e-3, 0.02, 0.1])
+    lines = []
+    for y in draw(st.lists(share, min_size=1, max_size=3)):
+        off, short = draw(gap), draw(gap)
+        lines.append(np.array([[0.0, y * d], [w, y * d + off]]))
+        lines.append(
+            np.array([[draw(share) * w, draw(share) * d], [draw(share) * w, y * d - short]])
+        )
+    heads = [(draw(share) * w, draw(share) * d) for _ in range(draw(st.integers(0, 4)))]
+    lines += [closed(np.array(at) + box(-0.2, -0.2, 0.2, 0.2)) for at in heads]
+    points = np.array(draw(st.lists(st.tuples(share, share), max_size=3))).reshape(-1, 2) * (w, d)
+    inside = tuple(line for line in lines if np.hypot(*(line[1] - line[0])) > 0.05)
+    return inside, points, (w, d), h
+
+
+@settings(max_examples=80, deadline=None, derandomize=True)
+@given(drawn=nearly_touching())
+def test_lines_that_nearly_touch_leave_no_crack(drawn):
+    """A line may end 2 mm from another, or run 1 mm off the edge: up to 2 mm are taken in or out."""
+    lines, points, (w, d), h = drawn
+    sheet = Sheet(name="s", areas=(Area(outline=box(0, 0, w, d)),), lines=lines, points=points)
+    one_whole(mesh_sheets([sheet], size=h), w * d, 2.0 * (w + d), gap=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("polygon", "sides"),
+    [
+        (box(0, 0, 2, 1), [[0, 1], [1, 2], [2, 3], [3, 0], [0, 2], [1, 3]]),  # two sides cross
+        (box(0, 0, 2, 2), [[0, 1], [1, 2], [2, 3], [3, 0]]),  # half of it has no corner
+    ],
+)
+def test_what_no_mesh_fits_is_refused_with_its_place(polygon, sides):
+    face = FreeFace(polygon=shapely.Polygon(polygon), points=box(0, 0, 2, 1), sides=np.array(sides))
+    with pytest.raises(InputError, match=r"no mesh fits the area of [24] m2 at \("):
+        triangles_of(face, lambda xy: np.full(len(xy), 5.0))
+
+
+def test_smoothing_leaves_no_element_worse_than_the_worst_beside_it():
+    """Corners anywhere: after it, the worst element at each node is no worse than it was."""
+    rng = np.random.default_rng(4)
+    n = 9
+    x, y = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+    at = np.arange(n * n).reshape(n, n)
+    quads = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=2).reshape(-1, 4)
+    free = ((x > 0) & (x < n - 1) & (y > 0) & (y < n - 1)).ravel()
+    points = (
+        np.stack([x.ravel(), y.ravel()], axis=1)
+        + 0.8 * rng.uniform(-1, 1, (n * n, 2)) * free[:, None]
+    )
+    triangles = np.zeros((0, 3), dtype=int)
+    moved = smoothed(points, quads, triangles, free)
+
+    def worst(places):
+        out = np.ones(n * n)
+        np.minimum.at(out, quads.ravel(), np.repeat(squareness(places[quads]), 4))
+        return out
+
+    assert np.array_equal(moved[~free], points[~free])
+    assert (worst(moved) >= worst(points) - 1e-6).all()
+    assert worst(moved).mean() > worst(points).mean() + 0.1
+
+
+def test_a_wall_through_four_storeys_is_divided_alike_where_one_alone_is_cut():
+    """What the lowest storey is cut at reaches the highest, storey by storey."""
+    wall = np.array([[0.0, 3.0], [8.0, 3.0]])
+    beam = np.array([[2.3, 0.0], [2.3, 6.0]])
+    sheets = [
+        Sheet(
+            name=f"level {i}",
+            areas=(Area(outline=box(0, 0, 8, 6)),),
+            lines=(wall, beam) if i == 0 else (wall,),
+            plane=np.array([3.0 * i, 0.0, 0.0]),
+        )
+        for i in range(4)
+    ]
+    ties = [Tie(sheets=pair, line=wall) for pair in pairwise(range(4))]
+    mesh = mesh_sheets(sheets, size=1.0, ties=ties)
+    rows = [mesh.nodes[mesh.along(i, wall), :2] for i in range(4)]
+    assert 2.3 in rows[3][:, 0].round(9)
+    for row in rows[1:]:
+        assert row == pytest.approx(rows[0], abs=1e-9)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.2, 0.5, 0.999])
+def test_places_within_a_distance_are_one_wherever_they_lie(shift):
+    """0.9 mm apart is one and 1.1 mm is two, wherever a grid of whole millimetres has its lines."""
+    places = np.array([[0.0, 0.0], [0.9e-3, 0.0], [2.0e-3, 0.0], [2.0e-3, 5.0]]) + shift * 1e-3
+    assert first_there(places, 1e-3).tolist() == [0, 0, 2, 3]

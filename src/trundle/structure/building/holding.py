@@ -7,8 +7,6 @@ from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from trundle._typing import Array
 from trundle.structure.building.held import Base
@@ -17,6 +15,7 @@ from trundle.structure.building.parts import Building
 from trundle.structure.building.sheets import passes
 from trundle.structure.elements import GROUND, PointMasses, SpringGroup
 from trundle.structure.links import RigidLinks
+from trundle.structure.mesh.merging import linked
 from trundle.structure.mesh.polygons import covers
 from trundle.structure.mesh.sheet_mesh import SheetMesh
 from trundle.structure.model import MirrorPlane
@@ -154,13 +153,11 @@ def _as_blocks(leads: Array, behind: Array) -> tuple[RigidLinks, ...]:
         return ()
     nodes, ends = np.unique(np.stack([leads, behind]), return_inverse=True)
     one, other = ends.reshape(2, -1)
-    n = len(nodes)
-    graph = sparse.coo_array((np.ones(len(one)), (one, other)), shape=(n, n))
-    _, block = csgraph.connected_components(graph, directed=False)
-    first = np.full(int(block.max()) + 1, -1)
-    np.maximum.at(first, block[one], one)  # any of the axes leads
-    follow = np.flatnonzero(first[block] != np.arange(n))
-    return (RigidLinks(leads=nodes[first[block[follow]]], follows=nodes[follow]),)
+    axis = np.full(len(nodes), -1)
+    block = linked(np.stack([one, other], axis=1), len(nodes))
+    axis[block[one]] = one  # any of the axes leads
+    follow = np.flatnonzero(axis[block] != np.arange(len(nodes)))
+    return (RigidLinks(leads=nodes[axis[block[follow]]], follows=nodes[follow]),)
 
 
 def mirrors(building: Building) -> tuple[MirrorPlane, ...]:

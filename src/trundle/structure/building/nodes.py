@@ -8,11 +8,12 @@ from jaxtyping import Float, Int
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.building.parts import Building
+from trundle.structure.mesh.merging import first_there
 from trundle.structure.mesh.sheet_mesh import SheetMesh
 
 __all__ = ["Nodes"]
 
-_PER_METRE = 1000  # nodes that columns and walls share between storeys stand at one place
+_SAME = 5e-4  # m, within which nodes that walls share between storeys are one
 
 
 class Nodes:
@@ -60,12 +61,6 @@ class Nodes:
     def merged(self) -> tuple[Float[Array, "nodes 3"], Int[Array, " made"]]:
         """Return the places of all nodes [m], and the number of each as it was given out."""
         places = np.concatenate(self._places)
-        keys = np.round(places * _PER_METRE).astype(np.int64)
-        n = len(self._mesh.nodes)
-        _, first, same = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-        first = first[same.ravel()]
-        first[:n] = np.arange(n)  # those of sheets are apart already
-        kept = np.flatnonzero(first == np.arange(len(first)))
-        number = np.full(len(first), -1, dtype=np.intp)
-        number[kept] = np.arange(len(kept))
-        return places[kept], number[first]
+        # those of sheets are apart already, and first: they keep their numbers
+        first, number = np.unique(first_there(places, _SAME), return_inverse=True)
+        return places[first], number

@@ -67,12 +67,6 @@ class Classes:
         """Number of elements on each edge."""
         return self.counts[self.of]
 
-    def finer(self, edges: Int[Array, " some"]) -> Classes:
-        """Divide some edges twice as finely."""
-        counts = self.counts.copy()
-        counts[np.unique(self.of[edges])] *= 2
-        return replace(self, counts=counts)
-
 
 def patches_of(graph: PlaneGraph, wanted: Float[Array, " edges"], first: int) -> tuple[Patch, ...]:
     """Return the faces that a grid fits; `wanted` are elements asked for on edges from `first`."""

@@ -2,8 +2,8 @@
 
 The lattice lies along the face's longest edge and is twice as fine wherever elements are asked to
 be smaller, so that most of its triangles pair to squares. Every part of an edge must come out as a
-side of triangles, or neighbours would not meet; edges for which the nodes of a face would not let
-that happen are divided further before anything is meshed (`edges_to_divide`).
+side of triangles, or neighbours would not meet: the triangulation is constrained to them. Lattice
+points in the way of a side are left out first, as triangles would be thin beside it.
 """
 
 # pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
@@ -12,22 +12,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import pythoncdt as cdt
 import shapely
 from jaxtyping import Float, Int
 from scipy.spatial import Delaunay, cKDTree
 
 from trundle._typing import Array
+from trundle.errors import InputError
 from trundle.structure.mesh.planar import away_from, inside
 
-__all__ = ["FreeFace", "edges_to_divide", "triangles_of"]
+__all__ = ["FreeFace", "triangles_of"]
 
 _CLOSE = 0.55  # of an element's size, to which lattice points may come near edges
 _GROW = 0.4  # of the distance from a short edge, by which elements may be larger
 _LEVELS = 6  # halvings of the lattice
-_TRIES = 6
-_ROOM = 1e-3  # of its size: a triangle flatter than that is none
+_GAP = 1e-6  # of a face, that its triangles may leave out or cover twice
+_ROOM = 1e-6  # of its size: a triangle flatter than that is none
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,11 +52,6 @@ class FreeFace:
     sides: Int[Array, "sides 2"]
 
 
-def edges_to_divide(face: FreeFace) -> Int[Array, " sides"]:
-    """Return which sides do not come out as sides of triangles between the nodes of edges."""
-    return np.flatnonzero(_missing(_delaunay(face.points), face.sides))
-
-
 def triangles_of(
     face: FreeFace, size: Callable[[Array], Array]
 ) -> tuple[Float[Array, "inner 2"], Int[Array, "triangles 3"]]:
@@ -62,7 +60,7 @@ def triangles_of(
     Parameters
     ----------
     face : FreeFace
-        Its edges divided, see `edges_to_divide`.
+        Its edges, divided.
     size : callable
         Largest element edge at places [m].
 
@@ -72,39 +70,82 @@ def triangles_of(
         New nodes [m].
     triangles : ndarray of int, shape (n_triangles, 3)
         Places in its points, and behind them in the new ones; counterclockwise.
+
+    Raises
+    ------
+    InputError
+        No mesh that meets its neighbours side by side fits it.
     """
-    inner = _lattice(face, size)
-    for _ in range(_TRIES):
-        points = np.concatenate([face.points, inner])
-        found = _delaunay(points)
-        lost = face.sides[_missing(found, face.sides)]
-        if not len(lost):
-            break
-        # a lattice point inside the circle round a side stands in its way
-        middle = face.points[lost].mean(axis=1)
-        radius = 0.5 * np.linalg.norm(np.diff(face.points[lost], axis=1)[:, 0], axis=1)
-        away = np.linalg.norm(inner[:, None] - middle, axis=2) < 1.2 * radius
-        inner = inner[~away.any(axis=1)]
+    inner = _clear(face, _lattice(face, size))
     points = np.concatenate([face.points, inner])
-    found = _delaunay(points)
+    found = _constrained(points, face.sides)
     centres = points[found].mean(axis=1)
-    return inner, found[inside(face.polygon, centres) & _solid(points, found)]
+    found = found[inside(face.polygon, centres) & _solid(points, found)]
+    _check(face, points, found)
+    return inner, found
+
+
+def _clear(face: FreeFace, inner: Array) -> Array:
+    """Leave out lattice points that would spoil the triangles at a side: inside its circle."""
+    lost = face.sides[_missing(_delaunay(np.concatenate([face.points, inner])), face.sides)]
+    middle = face.points[lost].mean(axis=1)
+    radius = 0.5 * np.linalg.norm(np.diff(face.points[lost], axis=1)[:, 0], axis=1)
+    near = np.linalg.norm(inner[:, None] - middle, axis=2) < 1.2 * radius
+    return inner[~near.any(axis=1)]
+
+
+def _constrained(points: Array, sides: Array) -> Array:
+    """Return triangles between points of which all sides are sides; none where sides cross."""
+    mesh = cdt.Triangulation(
+        cdt.VertexInsertionOrder.AUTO, cdt.IntersectingConstraintEdges.NOT_ALLOWED, 0.0
+    )
+    vertices: Any = np.ascontiguousarray(points)
+    edges: Any = sides.astype(np.uint32)
+    try:
+        mesh.insert_vertices(vertices)
+        mesh.insert_edges(edges)
+    except RuntimeError:  # two points are one, or sides cross
+        return np.zeros((0, 3), dtype=np.intp)
+    mesh.erase_super_triangle()
+    return mesh.triangles_array()["vertices"].astype(np.intp)
+
+
+def _check(face: FreeFace, points: Array, found: Array) -> None:
+    """Refuse a mesh with a gap, or one that does not meet its neighbours side by side.
+
+    Raises
+    ------
+    InputError
+        Where lines nearly touch, or meet at an angle too sharp for elements.
+    """
+    area = 0.5 * _twice(points, found).sum() if len(found) else 0.0
+    lost = np.flatnonzero(_missing(found, face.sides)) if len(found) else np.arange(1)
+    if len(lost) or abs(area - face.polygon.area) > _GAP * face.polygon.area:
+        x, y = face.points[face.sides[lost[0] if len(lost) else 0]].mean(axis=0)
+        raise InputError(
+            f"no mesh fits the area of {face.polygon.area:.3g} m2 at ({x:.4g}, {y:.4g}) m: lines "
+            "nearly touch there, or meet at a very sharp angle; move them apart, or onto each other"
+        )
 
 
 def _delaunay(points: Array) -> Array:
     """Return Delaunay triangles, counterclockwise."""
     found = np.asarray(Delaunay(points - points.mean(axis=0)).simplices, dtype=np.intp)
-    a, b, c = (points[found[:, i]] for i in range(3))
-    turned = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0] < 0.0
+    turned = _twice(points, found) < 0.0
     found[turned] = found[turned][:, [0, 2, 1]]
     return found
 
 
+def _twice(points: Array, triangles: Array) -> Array:
+    """Return twice the area of triangles, negative for those that run clockwise."""
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+
+
 def _solid(points: Array, triangles: Array) -> Array:
     a, b, c = (points[triangles[:, i]] for i in range(3))
-    twice = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
     longest = np.max([np.sum((p - q) ** 2, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=0)
-    return twice > _ROOM * longest
+    return _twice(points, triangles) > _ROOM * longest
 
 
 def _missing(triangles: Array, sides: Array) -> Array:

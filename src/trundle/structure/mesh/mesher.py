@@ -11,6 +11,7 @@ from trundle._checks import positive
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.mesh.fill import Filling, filled
+from trundle.structure.mesh.merging import first_there
 from trundle.structure.mesh.planar import SNAP, PlaneGraph, away_from, cut, on_segment
 from trundle.structure.mesh.settle import settled
 from trundle.structure.mesh.sheet import Refinement, Sheet, Tie
@@ -63,16 +64,17 @@ def mesh_sheets(
 
 def _cut_alike(sheets: Sequence[Sheet], ties: Sequence[Tie]) -> list[PlaneGraph]:
     """Cut all sheets, those that are tied at each other's vertices too."""
-    none = np.zeros((0, 2))
-    graphs = [cut(sheet, none) for sheet in sheets]
-    more: dict[int, list[Array]] = {}
-    for tie in ties:
-        for here, there in (tie.sheets, tie.sheets[::-1]):
-            points = graphs[there].points
-            found = points[on_segment(points, tie.line)] if len(points) else points
-            more.setdefault(here, []).append(found)
-    for i, places in more.items():
-        graphs[i] = cut(sheets[i], np.concatenate(places))
+    graphs = [cut(sheet, np.zeros((0, 2))) for sheet in sheets]
+    counts: list[int] = []
+    while counts != (counts := [len(graph.points) for graph in graphs]):
+        # what one sheet is given it hands on: a wall through ten storeys takes nine rounds at most
+        more: dict[int, list[Array]] = {}
+        for tie in ties:
+            for here, there in (tie.sheets, tie.sheets[::-1]):
+                points = graphs[there].points
+                more.setdefault(here, []).append(points[on_segment(points, tie.line)])
+        for i, places in more.items():
+            graphs[i] = cut(sheets[i], np.concatenate(places))
     return graphs
 
 
@@ -116,9 +118,7 @@ def _merged(sheets: Sequence[Sheet], filling: Filling, hard: Sequence[Array]) ->
     planes = np.array([sheet.plane for sheet in sheets])[filling.sheet]
     z = planes[:, 0] + np.einsum("ij,ij->i", planes[:, 1:], filling.xy)
     nodes = np.column_stack([filling.xy, z])
-    keys = np.round(nodes / (2.0 * SNAP)).astype(np.int64)
-    _, first, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    number = number.ravel()
+    first, number = np.unique(first_there(nodes, 0.5 * SNAP), return_inverse=True)
     return SheetMesh(
         nodes=nodes[first],
         quads=number[filling.quads],

@@ -14,11 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 from jaxtyping import Float, Int
-from scipy import sparse
-from scipy.sparse import csgraph
-from scipy.spatial import cKDTree
 
 from trundle._typing import Array
+from trundle.structure.mesh.merging import first_there
 from trundle.structure.mesh.sheet import Area, Sheet
 
 __all__ = ["SNAP", "Face", "PlaneGraph", "away_from", "cut", "inside", "on_segment"]
@@ -112,14 +110,7 @@ def _on_grid(xy: Array) -> Array:
 def _met(ends: Array, single: Array) -> tuple[Array, Array]:
     """Move places that lie within `SNAP` of each other to the first of them."""
     places = np.concatenate([ends.reshape(-1, 2), single])
-    if not len(places):
-        return ends, single
-    pairs = cKDTree(places).query_pairs(SNAP, output_type="ndarray")
-    n = len(places)
-    graph = sparse.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    _, group = csgraph.connected_components(graph, directed=False)
-    _, first = np.unique(group, return_index=True)
-    moved = places[first][group]
+    moved = places[first_there(places, SNAP)]
     ends = moved[: 2 * len(ends)].reshape(-1, 2, 2)
     return ends[(ends[:, 0] != ends[:, 1]).any(axis=1)], moved[2 * len(ends) :]
 

@@ -12,13 +12,13 @@ from scipy.spatial import cKDTree
 
 from trundle._typing import Array
 from trundle.structure.mesh.division import Classes, Patch, divided, patches_of
-from trundle.structure.mesh.free import FreeFace, edges_to_divide
+from trundle.structure.mesh.free import FreeFace
+from trundle.structure.mesh.merging import linked
 from trundle.structure.mesh.planar import SNAP, Face, PlaneGraph, on_segment
 from trundle.structure.mesh.sheet import Tie
 
 __all__ = ["FreeOne", "Settled", "settled"]
 
-_TRIES = 8  # halvings of edges that a free face cannot keep
 _SAMPLES = (np.arange(100) + 0.5) / 100  # of an edge, where sizes are asked for
 _GRADED = 1.3  # ratio of sizes along an edge, from which its elements differ
 
@@ -44,20 +44,13 @@ def settled(
     length = np.concatenate([np.linalg.norm(e[:, 1] - e[:, 0], axis=1) for e in ends])
     density = np.concatenate([_density(e, f) for e, f in zip(ends, sizes, strict=True)])
     pairs = [pair for tie in ties for pair in _tied(graphs, first, tie)]
-    for a, b in pairs:
-        density[a] = density[b] = np.maximum(density[a], density[b])
+    density = _shared(density, pairs)
     wanted = length * density.mean(axis=1)
     patches = [
         patches_of(g, wanted[a:b], int(a))
         for g, a, b in zip(graphs, first[:-1], first[1:], strict=True)
     ]
     classes = divided(wanted, length, [patch for some in patches for patch in some], pairs)
-    for _ in range(_TRIES):
-        out = Settled.of(graphs, patches, classes, density)
-        lost = out.edges_lost()
-        if not len(lost):
-            return out
-        classes = classes.finer(lost)
     return Settled.of(graphs, patches, classes, density)
 
 
@@ -75,6 +68,14 @@ def _tied(graphs: Sequence[PlaneGraph], first: Array, tie: Tie) -> list[tuple[in
     away, match = (np.asarray(values) for values in found_there)
     same, matched = away <= SNAP, other[match]
     return list(zip(one[same].tolist(), matched[same].tolist(), strict=True))
+
+
+def _shared(density: Array, pairs: Sequence[tuple[int, int]]) -> Array:
+    """Return densities of which those of tied edges are the same: the largest of any of them."""
+    same = linked(np.array(pairs, dtype=np.intp).reshape(-1, 2), len(density))
+    out = np.zeros_like(density)
+    np.maximum.at(out, same, density)
+    return out[same]
 
 
 def _density(ends: Array, size: Callable[[Array], Array]) -> Array:
@@ -102,15 +103,12 @@ class FreeOne:
         What its mesh must hold.
     nodes : ndarray of int
         Numbers of the nodes that it starts from.
-    side_edges : ndarray of int
-        Edge that each of its sides is part of.
     """
 
     sheet: int
     tag: int
     face: FreeFace
     nodes: Int[Array, " nodes"]
-    side_edges: Int[Array, " sides"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -232,9 +230,6 @@ class Settled:
                 sides=np.searchsorted(nodes, sides),
             ),
             nodes=nodes,
-            side_edges=np.repeat(
-                np.array(edges) + self.first_edge[sheet], [len(r) - 1 for r in rows]
-            ),
         )
 
     @property
@@ -255,8 +250,3 @@ class Settled:
             for edge in range(len(graph.edges))
         ]
         return np.concatenate([np.stack([r[:-1], r[1:]], axis=1) for r in rows])
-
-    def edges_lost(self) -> Int[Array, " edges"]:
-        """Return the edges that free faces cannot keep as they are divided."""
-        lost = [one.side_edges[edges_to_divide(one.face)] for one in self.free_faces]
-        return np.unique(np.concatenate([np.zeros(0, dtype=np.intp), *lost]))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from jaxtyping import Bool, Float, Int
 from scipy import sparse
@@ -12,6 +14,7 @@ from trundle.structure.mesh.quality import angles
 __all__ = ["smoothed"]
 
 _ROUNDS = 12
+_ROUND_OFF = 1e-9
 
 
 def smoothed(
@@ -33,24 +36,17 @@ def smoothed(
     """
     beside = _neighbours(quads, triangles, len(points))
     n_beside = np.maximum(beside.sum(axis=1), 1.0)
-    worst = _worst(points, quads, triangles)
+    kinds = [e for e in (quads, triangles) if len(e)]
+    worst = _worst(points, kinds)
     for _ in range(_ROUNDS):
         middle = np.stack([beside @ points[:, i] for i in range(2)], axis=1) / n_beside[:, None]
-        moved = np.where(free[:, None], 0.5 * (points + middle), points)
-        after = _worst(moved, quads, triangles)
-        better = free & (after >= worst - 1e-9)
-        if not better.any():
+        tried = np.where(free[:, None], 0.5 * (points + middle), points)
+        # corners of spoiled elements go back; with all of them back no element is spoiled
+        while len(spoiled := _spoiled(tried, kinds, worst)):
+            tried[spoiled] = points[spoiled]
+        if np.array_equal(tried, points):
             break
-        # one that stays changes elements of those that move: again, with them as they will be
-        tried = np.where(better[:, None], moved, points)
-        after = _worst(tried, quads, triangles)
-        spoiled = after < worst - 1e-9
-        near = (beside @ spoiled.astype(float) > 0.0) | spoiled
-        tried = np.where(near[:, None], points, tried)
-        after = _worst(tried, quads, triangles)
-        if after.min() < worst.min() - 1e-9:
-            break
-        points, worst = tried, after
+        points, worst = tried, _worst(tried, kinds)
     return points
 
 
@@ -64,11 +60,22 @@ def _neighbours(quads: Array, triangles: Array, n: int) -> sparse.csr_array:
     return out
 
 
-def _worst(points: Array, quads: Array, triangles: Array) -> Array:
-    """Return how good the worst element at each node is: 1 for right or equal angles."""
+def _good(points: Array, elements: Array) -> Array:
+    """Return how good elements are: 1 with right or equal angles, below 0 if one is folded."""
+    ideal = (1.0 - 2.0 / elements.shape[1]) * np.pi
+    return 1.0 - np.abs(angles(points[elements]) - ideal).max(axis=1) / ideal
+
+
+def _worst(points: Array, kinds: Sequence[Array]) -> Array:
+    """Return how good the worst element at each node is."""
     worst = np.ones(len(points))
-    for elements, ideal in ((quads, 0.5 * np.pi), (triangles, np.pi / 3.0)):
-        if len(elements):
-            off = np.abs(angles(points[elements]) - ideal).max(axis=1) / ideal
-            np.minimum.at(worst, elements.ravel(), np.repeat(1.0 - off, elements.shape[1]))
+    for elements in kinds:
+        good = _good(points, elements)
+        np.minimum.at(worst, elements.ravel(), np.repeat(good, elements.shape[1]))
     return worst
+
+
+def _spoiled(points: Array, kinds: Sequence[Array], worst: Array) -> Array:
+    """Return corners of elements that are worse than the worst was at one of their corners."""
+    found = [e[_good(points, e) < worst[e].max(axis=1) - _ROUND_OFF].ravel() for e in kinds]
+    return np.concatenate([np.zeros(0, dtype=np.intp), *found])

@@ -575,3 +575,53 @@ def test_half_a_table_at_a_plane_of_symmetry_has_half_the_mass_and_its_symmetric
     f_whole, f_half = (floor.modes(60.0).frequencies for floor in both)
     nearest = np.abs(f_half[:5, None] - f_whole).min(axis=1)
     assert (nearest < 0.01 * f_half[:5]).all()
+
+
+@pytest.mark.parametrize("head", ["point", "rigid"])
+def test_a_beam_is_hinged_at_the_face_of_a_column_with_a_rigid_head(head):
+    """A beam in a thin strip on two stiff posts: P L^3 / 48 EI between its hinges.
+
+    Within a head nothing bends: a hinge at the column's axis would let go of nothing, and leave
+    the beam built in, four times stiffer.
+    """
+    span, width, force = 8.0, 0.8, 1e5
+    soft = replace(CONCRETE, elastic_modulus=E * 1e-4)
+    profile = Profile.rectangle(0.3, 0.8, CONCRETE)
+    section = profile.section
+    stiff = Profile.rectangle(width, width, replace(CONCRETE, elastic_modulus=E * 1e4))
+    house = Building(
+        storeys=LEVELS,
+        slabs=(
+            slab(
+                corners=box(-1, -1, span + 1, 1),
+                section=replace(plate(0.05), material=soft),
+            ),
+        ),
+        beams=(
+            Beam(
+                on="slab",
+                profile=profile,
+                along=line((0, 0), (span, 0)),
+                hinged=(True, True),
+                below=False,
+            ),
+        ),
+        columns=tuple(column(x, 0.0, profile=stiff, head=head) for x in (0.0, span)),
+        masses=(Mass(on="slab", along=line((span / 2, 0)), mass=1.0),),
+    )
+    clear = span - (width if head == "rigid" else 0.0)
+    exact = force * clear**3 / (48.0 * E * section.inertia_y)
+    exact += force * clear / (4.0 * G * section.shear_area_z)
+    (sag,) = pushed(built(house, 0.5), [(span / 2, 0, 0)], force, (span / 2, 0, 0))
+    assert sag == pytest.approx(exact, rel=0.01)
+
+
+@pytest.mark.parametrize("rise", [1.0, 1.001, 1.003, 0.997])
+def test_a_ramp_meets_its_floors_whatever_their_level(rise):
+    """The same edge, seen from the ramp and from the floor, is one: nothing is loose above it."""
+    low, high = (ramp_house(rise / 10.0 * factor) for factor in (1.0, 1.0 + 1e-6))
+    nodes = [len(built(house, 0.7).nodes) for house in (low, high)]
+    assert nodes[0] == nodes[1]
+    assert first(low, 0.7, f_max=40.0)[0] == pytest.approx(
+        first(high, 0.7, f_max=40.0)[0], rel=1e-3
+    )

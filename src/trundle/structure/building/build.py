@@ -24,9 +24,10 @@ from trundle.structure.building.members import (
 )
 from trundle.structure.building.nodes import Nodes
 from trundle.structure.building.parts import Building
-from trundle.structure.building.sheets import sheets_of, ties_of
+from trundle.structure.building.sheets import plane_of, sheets_of, ties_of
 from trundle.structure.elements import BeamGroup, Elements, ShellGroup, Standable, TriangleGroup
 from trundle.structure.floor import Floor
+from trundle.structure.links import follows
 from trundle.structure.mechanisms import loose_parts
 from trundle.structure.mesh.mesher import mesh_sheets
 from trundle.structure.mesh.sheet import Refinement
@@ -116,8 +117,11 @@ def build_building(building: Building, meshing: Meshing) -> Floor:
 
 def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
     nodes = Nodes(building, mesh)
+    links = heads(building, mesh, nodes)
+    leader = follows(links, len(mesh.nodes))
+    block = np.where(leader < 0, np.arange(len(leader)), leader)
     laid = [
-        *laid_beams(building, mesh, SlabThickness(building, mesh)),
+        *laid_beams(building, mesh, SlabThickness(building, mesh), block),
         *laid_columns(building, nodes),
         *laid_braces(building, nodes),
     ]
@@ -134,7 +138,7 @@ def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
         springs=tuple(springs(building, mesh, nodes)),
         masses=tuple(masses(building, mesh)),
         others=(*triangles.values(), *(o for o in members if not isinstance(o, BeamGroup))),
-        links=heads(building, mesh, nodes),
+        links=links,
         decks=tuple(_decks(building, xyz, {**quads}, triangles, members)),
         mirrors=mirrors(building),
         name=building.name,
@@ -172,11 +176,10 @@ def _decks(
     members: Sequence[Elements],
 ) -> Iterator[Surface]:
     """Give a surface for each storey and ramp that something can be stood on."""
-    storeys = {i: Frame.level(s.level) for i, s in enumerate(building.storeys)}
-    frames = storeys | {
-        len(storeys) + i: Frame.through(sheet.plane)
-        for i, sheet in enumerate(sheets_of(building, {})[len(storeys) :])
-    }
+    frames = [
+        *(Frame.level(storey.level) for storey in building.storeys),
+        *(Frame.through(plane_of(building, ramp)) for ramp in building.ramps),
+    ]
     for i, name in enumerate(building.floors):
         groups = [g for kind in (quads, triangles) for key, g in kind.items() if key[0] == i]
         if not groups:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -83,17 +82,22 @@ class Laid:
                 yield group
 
 
-def laid_beams(building: Building, mesh: SheetMesh, thickness: SlabThickness) -> Iterator[Laid]:
-    """Give the pieces of beams along element edges, each hanging as its slab is thick."""
+def laid_beams(
+    building: Building, mesh: SheetMesh, thickness: SlabThickness, block: Int[Array, " nodes"]
+) -> Iterator[Laid]:
+    """Give the pieces of beams along element edges, each hanging as its slab is thick.
+
+    `block` names the rigid block that each node of the mesh is part of: itself, if of none.
+    """
     number = {name: i for i, name in enumerate(building.floors)}
     for beam in building.beams:
         sheet, found = number[beam.on], []
-        for a, b in zip(beam.along[:-1], beam.along[1:], strict=True):
-            nodes = mesh.along(sheet, np.stack([a, b]))
+        for pair in pairwise(beam.along):
+            nodes = mesh.along(sheet, np.stack(pair))
             found.append(np.stack([nodes[:-1], nodes[1:]], axis=1))
         ends = np.concatenate(found)
         drop = _drops(beam, ends, thickness)
-        for piece, released in _hinged(ends, beam.hinged):
+        for piece, released in _hinged(ends, beam.hinged, block):
             for depth in np.unique(drop[piece]):
                 yield Laid(
                     profile=beam.profile,
@@ -143,17 +147,18 @@ def _drops(beam: Beam, ends: Array, thickness: SlabThickness) -> Array:
     return np.round(0.5 * thickness.at(ends) + beam.profile.above, 9)
 
 
-def _hinged(ends: Array, hinged: tuple[bool, bool]) -> Iterator[tuple[Array, Array]]:
-    """Give pieces of a member alike in their hinges: the first, the last, those between."""
-    n = len(ends)
-    by_hinges: dict[tuple[bool, bool], list[int]] = defaultdict(list)
-    for i in {0, n - 1}:
-        by_hinges[hinged[0] and i == 0, hinged[1] and i == n - 1].append(i)
-    by_hinges[False, False] += range(1, n - 1)
-    for (start, end), piece in by_hinges.items():
-        if piece:
-            released = np.stack([_BENDING & start, _BENDING & end])
-            yield np.array(sorted(piece)), released
+def _hinged(ends: Array, hinged: tuple[bool, bool], block: Array) -> Iterator[tuple[Array, Array]]:
+    """Give pieces of a member alike in their hinges: the first, the last, those between.
+
+    Pieces within the head of a column do not bend: a hinge there would let go of nothing, and
+    stands at the column's face instead.
+    """
+    bending = np.flatnonzero(block[ends[:, 0]] != block[ends[:, 1]])
+    at_start, at_end = np.zeros((2, len(ends)), dtype=bool)
+    at_start[bending[:1]], at_end[bending[-1:]] = hinged
+    for start, end in sorted({*zip(at_start.tolist(), at_end.tolist(), strict=True)}):
+        piece = np.flatnonzero((at_start == start) & (at_end == end))
+        yield piece, np.stack([_BENDING & start, _BENDING & end])
 
 
 def laid_columns(building: Building, nodes: Nodes) -> Iterator[Laid]:

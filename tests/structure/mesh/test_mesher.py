@@ -7,6 +7,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.distance import pdist
 
 from trundle.errors import InputError
 from trundle.structure.mesh import Area, Refinement, Sheet, Tie, mesh_sheets
@@ -264,7 +265,51 @@ def test_lines_that_nearly_touch_leave_no_crack(drawn):
     """A line may end 2 mm from another, or run 1 mm off the edge: up to 2 mm are taken in or out."""
     lines, points, (w, d), h = drawn
     sheet = Sheet(name="s", areas=(Area(outline=box(0, 0, w, d)),), lines=lines, points=points)
-    one_whole(mesh_sheets([sheet], size=h), w * d, 2.0 * (w + d), gap=2e-3)
+    mesh = mesh_sheets([sheet], size=h)
+    one_whole(mesh, w * d, 2.0 * (w + d), gap=2e-3)
+    for line in (pair for one in lines for pair in pairwise(one)):
+        led_along(mesh, np.array(line))
+
+
+def led_along(mesh, line):
+    """Nodes along a line follow each other by sides of elements, from one end to the other."""
+    row = mesh.along(0, line)
+    sides = {tuple(side) for side in sides_of(mesh)[0].tolist()}
+    assert all(tuple(sorted(pair)) in sides for pair in pairwise(row.tolist()))
+    assert np.abs(mesh.nodes[row[[0, -1]], :2] - line).max() < 2.5e-3
+    steps = np.linalg.norm(np.diff(mesh.nodes[row], axis=0), axis=1)
+    assert steps.sum() == pytest.approx(np.hypot(*(line[1] - line[0])), abs=5e-3)
+
+
+def test_lines_that_leave_each_other_at_a_tenth_of_a_milliradian_are_two():
+    """1 mm in 10 m: within the distance at which ends meet, nodes of both lie on either's line."""
+    lines = [np.array([[1.0, 1.0], [11.0, 1.0]]), np.array([[1.0, 1.0], [11.0, 1.003]])]
+    sheet = Sheet(
+        name="s", areas=(Area(outline=box(0, 0, 12, 4)),), lines=tuple(lines),
+        points=np.array([[3.0, 0.5]]),
+    )  # fmt: skip
+    mesh = mesh_sheets([sheet], size=1.0)
+    one_whole(mesh, 48.0, 32.0)
+    for line in lines:
+        led_along(mesh, line)
+    assert not set(mesh.along(0, lines[0])[1:]) & set(mesh.along(0, lines[1])[1:])
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_lines_that_cross_within_a_millimetre_cross_at_one_place(seed):
+    """Three lines through places up to 1 mm apart: a triangle too small for elements is a place."""
+    rng = np.random.default_rng(seed)
+    angle = rng.uniform(0.0, np.pi, 3)
+    along = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    middle = np.array([4.1, 3.2]) + rng.uniform(-5e-4, 5e-4, (3, 2))
+    lines = np.stack([middle - 2.0 * along, middle + 2.0 * along], axis=1)
+    sheet = Sheet(name="s", areas=(Area(outline=box(0, 0, 8, 6)),), lines=tuple(lines))
+    mesh = mesh_sheets([sheet], size=1.0)
+    one_whole(mesh, 48.0, 28.0)
+    near = mesh.nodes[np.hypot(*(mesh.nodes[:, :2] - (4.1, 3.2)).T) < 0.05]
+    assert len(near) == 1 or pdist(near).min() > 1e-3
+    for line in lines:
+        led_along(mesh, line)
 
 
 @pytest.mark.parametrize(

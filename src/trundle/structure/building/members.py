@@ -10,8 +10,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from trundle._typing import Array
-from trundle.errors import InputError
-from trundle.structure.building.held import SymmetryPlane
+from trundle.structure.building.held import SymmetryPlane, share_inside
 from trundle.structure.building.nodes import Nodes
 from trundle.structure.building.parts import Beam, Building, Wall
 from trundle.structure.building.profile import Profile
@@ -22,7 +21,7 @@ from trundle.structure.mesh.sheet_mesh import SheetMesh
 __all__ = ["Laid", "laid_beams", "laid_braces", "laid_columns", "laid_walls"]
 
 _FEWEST = 4  # elements of a column or wall between storeys
-_ON_PLANE = 1e-3  # m
+_UPRIGHT = 1e-3  # m
 _BENDING = np.array([False, True, True])
 _ALL = np.ones(3, dtype=bool)
 _UP = np.array([0.0, 0.0, 1.0])
@@ -63,10 +62,8 @@ class Laid:
 
         `number` is the row in `nodes` of each node as it was given out.
         """
-        ends, share = number[self.ends], np.ones(len(self.ends))
-        for plane in planes:
-            on = np.abs(nodes[ends][:, :, plane.axis] - plane.position) < _ON_PLANE
-            share[on.all(axis=1)] *= 0.5
+        ends = number[self.ends]
+        share = share_inside(nodes[ends], planes)
         for wanted in np.unique(share)[::-1]:
             section = self.profile.section
             group = BeamGroup(
@@ -187,7 +184,7 @@ def laid_braces(building: Building, nodes: Nodes) -> Iterator[Laid]:
     for brace in building.braces:
         what = f"brace {brace.name!r}"
         ends = [nodes.at(brace.on[i], brace.ends[i], what) for i in (0, 1)]
-        upright = np.allclose(*brace.ends, rtol=0.0, atol=_ON_PLANE)
+        upright = np.allclose(*brace.ends, rtol=0.0, atol=_UPRIGHT)
         released = np.tile(_ALL & brace.hinged, (2, 1))
         yield Laid(
             profile=brace.profile,
@@ -208,8 +205,6 @@ def laid_walls(
         names = [s.name for s in building.between(wall.bottom, wall.top)]
         lines = [mesh.along(number[name], wall.along) for name in names]
         for low, high in pairwise(lines):
-            if len(low) != len(high):
-                raise InputError(f"wall {wall.name!r}: its storeys are not divided alike")
             rows = nodes.rows_between(low, high, size, _FEWEST)
             corners = [rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]]
             elements = np.stack([corner.ravel() for corner in corners], axis=1)

@@ -23,6 +23,7 @@ class Nodes:
         self._mesh = mesh
         self._number = {name: i for i, name in enumerate(building.floors)}
         self._places = [mesh.nodes]
+        self._maker = [np.zeros(len(mesh.nodes), dtype=np.intp)]
         self._n = len(mesh.nodes)
 
     def at(self, on: str, place: Float[Array, " 2"], what: str) -> int:
@@ -55,12 +56,13 @@ class Nodes:
         places = start + shares[:, None, None] * (end - start)
         inner = self._n + np.arange((n - 1) * len(low)).reshape(n - 1, len(low))
         self._places.append(places.reshape(-1, 3))
+        self._maker.append(np.full(inner.size, len(self._maker)))
         self._n += inner.size
         return np.vstack([low, inner, high])
 
     def merged(self) -> tuple[Float[Array, "nodes 3"], Int[Array, " made"]]:
         """Return the places of all nodes [m], and the number of each as it was given out."""
-        places = np.concatenate(self._places)
-        # those of sheets are apart already, and first: they keep their numbers
-        first, number = np.unique(first_there(places, _SAME), return_inverse=True)
+        places, maker = np.concatenate(self._places), np.concatenate(self._maker)
+        # nodes of the sheets come first, and keep their numbers
+        first, number = np.unique(first_there(places, _SAME, apart=maker), return_inverse=True)
         return places[first], number

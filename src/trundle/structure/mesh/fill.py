@@ -72,7 +72,7 @@ def filled(settled: Settled, sizes: Sequence[Callable[[Array], Array]]) -> Filli
     free = list(_free(settled, sizes, first_free))
     xy = np.concatenate([settled.xy, *(one.inner for one in (*grids, *free))])
     triangles, number = _stacked([one.elements for one in free], 3)
-    quads, rest, quad_face, rest_face = paired(xy, triangles, number, settled.sides)
+    quads, rest, quad_face, rest_face = paired(xy, triangles, number, np.concatenate(settled.sides))
     all_quads = np.concatenate([_stacked([one.elements for one in grids], 4)[0], quads])
     may_move = np.arange(len(xy)) >= first_free
     of_free = np.array([(one.sheet, one.tag) for one in free], dtype=np.intp).reshape(-1, 2)

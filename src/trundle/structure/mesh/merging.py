@@ -13,7 +13,11 @@ from trundle._typing import Array
 __all__ = ["first_there", "linked"]
 
 
-def first_there(places: Float[Array, "places axes"], within: float) -> Int[Array, " places"]:
+def first_there(
+    places: Float[Array, "places axes"],
+    within: float,
+    apart: Int[Array, " places"] | None = None,
+) -> Int[Array, " places"]:
     """Return for each place the first one that is within a distance of it, or linked to it so.
 
     Parameters
@@ -22,10 +26,15 @@ def first_there(places: Float[Array, "places axes"], within: float) -> Int[Array
         Places [m].
     within : float
         Distance [m].
+    apart : ndarray of int, shape (n,), optional
+        Groups of places that are not one though they are near.
     """
     if not len(places):
         return np.zeros(0, dtype=np.intp)
-    return linked(cKDTree(places).query_pairs(within, output_type="ndarray"), len(places))
+    pairs = cKDTree(places).query_pairs(within, output_type="ndarray")
+    if apart is not None:
+        pairs = pairs[apart[pairs[:, 0]] != apart[pairs[:, 1]]]
+    return linked(pairs, len(places))
 
 
 def linked(pairs: Int[Array, "pairs 2"], n: int) -> Int[Array, " members"]:

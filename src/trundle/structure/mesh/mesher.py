@@ -12,13 +12,15 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.mesh.fill import Filling, filled
 from trundle.structure.mesh.merging import first_there
-from trundle.structure.mesh.planar import SNAP, PlaneGraph, away_from, cut, on_segment
-from trundle.structure.mesh.settle import settled
+from trundle.structure.mesh.planar import MOVED, SNAP, PlaneGraph, away_from, cut, on_segment
+from trundle.structure.mesh.quality import signed_areas
+from trundle.structure.mesh.settle import Settled, settled
 from trundle.structure.mesh.sheet import Refinement, Sheet, Tie
 from trundle.structure.mesh.sheet_mesh import SheetMesh
 
 __all__ = ["mesh_sheets"]
 
+_NEAR = "lines nearly touch there; move them apart, or onto each other"
 _GROW = 0.5  # of the distance from a refinement, by which elements may be larger
 
 
@@ -59,7 +61,9 @@ def mesh_sheets(
     filling = filled(edges, sizes)
     if only_triangles:
         filling = _halved(filling)
-    return _merged(sheets, filling, [edges.hard(i) for i in range(len(graphs))])
+    mesh = _merged(sheets, filling, edges)
+    _check(sheets, mesh, ties)
+    return mesh
 
 
 def _cut_alike(sheets: Sequence[Sheet], ties: Sequence[Tie]) -> list[PlaneGraph]:
@@ -113,17 +117,45 @@ def _halved(filling: Filling) -> Filling:
     )
 
 
-def _merged(sheets: Sequence[Sheet], filling: Filling, hard: Sequence[Array]) -> SheetMesh:
+def _merged(sheets: Sequence[Sheet], filling: Filling, edges: Settled) -> SheetMesh:
     """Put nodes into space; those of two sheets at one place are one."""
     planes = np.array([sheet.plane for sheet in sheets])[filling.sheet]
     z = planes[:, 0] + np.einsum("ij,ij->i", planes[:, 1:], filling.xy)
     nodes = np.column_stack([filling.xy, z])
-    first, number = np.unique(first_there(nodes, 0.5 * SNAP), return_inverse=True)
+    first, number = np.unique(
+        first_there(nodes, 0.5 * SNAP, apart=filling.sheet), return_inverse=True
+    )
     return SheetMesh(
         nodes=nodes[first],
         quads=number[filling.quads],
         triangles=number[filling.triangles],
         quad_owner=filling.quad_owner,
         triangle_owner=filling.triangle_owner,
-        hard=tuple(np.unique(number[some]) for some in hard),
+        hard=tuple(np.unique(number[edges.hard(i)]) for i in range(len(sheets))),
+        sides=tuple(number[some] for some in edges.sides),
     )
+
+
+def _check(sheets: Sequence[Sheet], mesh: SheetMesh, ties: Sequence[Tie]) -> None:
+    """Refuse elements that lines which nearly touch leave no room, and ties that do not meet.
+
+    Raises
+    ------
+    InputError
+        With the place of the first of them.
+    """
+    for elements in (mesh.quads, mesh.triangles):
+        corners = mesh.nodes[elements][:, :, :2]
+        flat = np.flatnonzero(signed_areas(corners) <= 0.0)
+        if len(flat):
+            x, y = corners[flat[0]].mean(axis=0)
+            raise InputError(f"no room for an element at ({x:.4g}, {y:.4g}) m: {_NEAR}")
+    for tie in ties:
+        one, other = (mesh.nodes[mesh.along(i, tie.line), :2] for i in tie.sheets)
+        if len(one) != len(other) or np.abs(one - other).max() > MOVED:
+            names = " and ".join(repr(sheets[i].name) for i in tie.sheets)
+            (x, y), (to_x, to_y) = tie.line
+            raise InputError(
+                f"{names} are not divided alike along the line from ({x:g}, {y:g}) to ({to_x:g}, "
+                f"{to_y:g}) m: {_NEAR}"
+            )

@@ -16,15 +16,20 @@ import shapely
 from jaxtyping import Float, Int
 
 from trundle._typing import Array
+from trundle.errors import InputError
 from trundle.structure.mesh.merging import first_there
 from trundle.structure.mesh.sheet import Area, Sheet
 
-__all__ = ["SNAP", "Face", "PlaneGraph", "away_from", "cut", "inside", "on_segment"]
+__all__ = ["MOVED", "SNAP", "Face", "PlaneGraph", "away_from", "cut", "inside", "on_segment"]
 
 SNAP = 1e-3
 """Distance at which ends and lines are taken to meet [m]."""
 
+MOVED = 2.0 * SNAP
+"""Distance within which an edge lies of the line that was asked for [m]."""
+
 _PER_METRE = 1_000_000  # steps of the grid that crossings are placed on
+_ROUNDS = 20
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,19 +90,46 @@ def cut(sheet: Sheet, more: Float[Array, "more 2"]) -> PlaneGraph:
     lines = [np.vstack([ring, ring[:1]]) for ring in rings] + [*sheet.lines]
     ends = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines] or [_NO_ENDS])
     single = np.concatenate([sheet.points, more])
-    ends, single = _met(ends, single)
-    segments = _split_at(ends, np.concatenate([ends.reshape(-1, 2), single]))
-    drawn = shapely.union_all(shapely.linestrings(segments), grid_size=1.0 / _PER_METRE)
-    pieces = _segments_of(drawn)
+    pieces, single = _cut_at_each_other(ends, single, sheet.name)
     points, numbers = np.unique(
         _on_grid(np.concatenate([pieces.reshape(-1, 2), single])),
         axis=0,
         return_inverse=True,
     )
-    edges = np.unique(np.sort(numbers.ravel()[: 2 * len(pieces)].reshape(-1, 2), axis=1), axis=0)
-    edges = edges[edges[:, 0] != edges[:, 1]]
-    faces = _faces(drawn, points, edges, sheet.areas)
+    edges = numbers.ravel()[: 2 * len(pieces)].reshape(-1, 2)
+    edges = np.unique(np.sort(edges, axis=1), axis=0)
+    faces = _faces(points, edges, sheet.areas)
     return PlaneGraph(points=points / _PER_METRE, edges=edges, faces=faces)
+
+
+def _cut_at_each_other(ends: Array, single: Array, name: str) -> tuple[Array, Array]:
+    """Cut segments wherever they meet, and return their pieces, with the single places.
+
+    Where crossings lie within `SNAP` of each other, or of a line, they become one, which moves
+    pieces, which may cross anew: again, until nothing moves. Then all vertices are apart.
+    """
+    own = np.concatenate([ends.reshape(-1, 2), single])
+    known, before = own, np.zeros((0, 4))
+    for _ in range(_ROUNDS):
+        known, ends = _met(known, ends)
+        own = known[: len(own)]
+        segments = shapely.linestrings(_split_at(ends, known))
+        ends = _segments_of(shapely.union_all(segments, grid_size=1.0 / _PER_METRE))
+        after = _as_rows(ends)
+        if np.array_equal(before, after):
+            return ends, own[len(own) - len(single) :]
+        known, before = np.concatenate([own, ends.reshape(-1, 2)]), after
+    raise InputError(f"{name}: too many lines nearly touch; move them apart, or onto each other")
+
+
+def _as_rows(ends: Array) -> Array:
+    """Return segments in one order, and each from its lower end, to compare them with others."""
+    xy = _on_grid(ends)
+    turned = (xy[:, 0, 0] > xy[:, 1, 0]) | (
+        (xy[:, 0, 0] == xy[:, 1, 0]) & (xy[:, 0, 1] > xy[:, 1, 1])
+    )
+    xy[turned] = xy[turned][:, ::-1]
+    return np.unique(xy.reshape(-1, 4), axis=0)
 
 
 _NO_ENDS = np.zeros((0, 2, 2))
@@ -107,12 +139,12 @@ def _on_grid(xy: Array) -> Array:
     return np.round(xy * _PER_METRE).astype(np.int64)
 
 
-def _met(ends: Array, single: Array) -> tuple[Array, Array]:
-    """Move places that lie within `SNAP` of each other to the first of them."""
-    places = np.concatenate([ends.reshape(-1, 2), single])
+def _met(known: Array, ends: Array) -> tuple[Array, Array]:
+    """Move places that lie within `SNAP` of each other to the first of them, known ones first."""
+    places = np.concatenate([known, ends.reshape(-1, 2)])
     moved = places[first_there(places, SNAP)]
-    ends = moved[: 2 * len(ends)].reshape(-1, 2, 2)
-    return ends[(ends[:, 0] != ends[:, 1]).any(axis=1)], moved[2 * len(ends) :]
+    ends = moved[len(known) :].reshape(-1, 2, 2)
+    return moved[: len(known)], ends[(ends[:, 0] != ends[:, 1]).any(axis=1)]
 
 
 def _split_at(ends: Array, places: Array) -> Array:
@@ -138,10 +170,9 @@ def _segments_of(drawn: shapely.Geometry) -> Array:
     return np.stack([xy[:-1], xy[1:]], axis=1)[same]
 
 
-def _faces(
-    drawn: shapely.Geometry, points: Array, edges: Array, areas: Sequence[Area]
-) -> tuple[Face, ...]:
-    polygons = shapely.get_parts(shapely.polygonize(list(shapely.get_parts(drawn))))
+def _faces(points: Array, edges: Array, areas: Sequence[Area]) -> tuple[Face, ...]:
+    pieces = [shapely.LineString(piece) for piece in points[edges] / _PER_METRE]
+    polygons = shapely.get_parts(shapely.polygonize(pieces))
     tags = _tags(polygons, areas)
     polygons, tags = polygons[tags >= 0], tags[tags >= 0]
     if not len(polygons):
@@ -219,12 +250,14 @@ def away_from(
     return np.asarray(away), np.asarray(which[1])
 
 
-def on_segment(places: Float[Array, "n 2"], line: Float[Array, "2 2"]) -> Array:
-    """Return which places lie on a segment, within `SNAP`."""
+def on_segment(
+    places: Float[Array, "n 2"], line: Float[Array, "2 2"], within: float = SNAP
+) -> Array:
+    """Return which places lie on a segment, within a distance [m]."""
     along = line[1] - line[0]
     length = np.hypot(*along)
     unit = along / length
     from_start = places - line[0]
     station = from_start @ unit
     aside = np.abs(from_start @ np.array([-unit[1], unit[0]]))
-    return (aside <= SNAP) & (station >= -SNAP) & (station <= length + SNAP)
+    return (aside <= within) & (station >= -within) & (station <= length + within)

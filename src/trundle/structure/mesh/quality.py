@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 
-__all__ = ["MeshQuality", "angles", "aspects", "quality_of", "squareness"]
+__all__ = ["MeshQuality", "angles", "aspects", "quality_of", "signed_areas", "squareness"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +44,7 @@ def quality_of(shapes: Iterable[Float[Array, "_ corners 2"]]) -> MeshQuality:
     areas = dict.fromkeys((3, 4), 0.0)
     counts = dict.fromkeys(areas, 0)
     for shape in groups:
-        areas[shape.shape[1]] += float(_areas(shape).sum())
+        areas[shape.shape[1]] += float(np.abs(signed_areas(shape)).sum())
         counts[shape.shape[1]] += len(shape)
     return MeshQuality(
         n_quads=counts[4],
@@ -56,9 +56,10 @@ def quality_of(shapes: Iterable[Float[Array, "_ corners 2"]]) -> MeshQuality:
     )
 
 
-def _areas(corners: Array) -> Array:
-    x, y = corners[..., 0], corners[..., 1]
-    return 0.5 * np.abs(np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1))
+def signed_areas(corners: Float[Array, "elements n 2"]) -> Float[Array, " elements"]:
+    """Return areas [m2], negative for elements that run clockwise."""
+    x, y = np.moveaxis(corners - corners.mean(axis=1, keepdims=True), 2, 0)
+    return 0.5 * np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
 
 
 def angles(corners: Float[Array, "elements n 2"]) -> Float[Array, "elements n"]:

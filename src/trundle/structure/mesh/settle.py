@@ -14,7 +14,7 @@ from trundle._typing import Array
 from trundle.structure.mesh.division import Classes, Patch, divided, patches_of
 from trundle.structure.mesh.free import FreeFace
 from trundle.structure.mesh.merging import linked
-from trundle.structure.mesh.planar import SNAP, Face, PlaneGraph, on_segment
+from trundle.structure.mesh.planar import MOVED, SNAP, Face, PlaneGraph, on_segment
 from trundle.structure.mesh.sheet import Tie
 
 __all__ = ["FreeOne", "Settled", "settled"]
@@ -59,7 +59,7 @@ def _tied(graphs: Sequence[PlaneGraph], first: Array, tie: Tie) -> list[tuple[in
     found = []
     for i in tie.sheets:
         ends = graphs[i].points[graphs[i].edges]
-        on = on_segment(ends[:, 0], tie.line) & on_segment(ends[:, 1], tie.line)
+        on = np.all([on_segment(ends[:, i], tie.line, MOVED) for i in (0, 1)], axis=0)
         found.append((np.flatnonzero(on) + first[i], ends[on].mean(axis=1)))
     (one, here), (other, there) = found
     if not len(one) or not len(other):
@@ -242,11 +242,12 @@ class Settled:
         )
 
     @property
-    def sides(self) -> Int[Array, "sides 2"]:
-        """Both nodes of every part of an edge."""
-        rows = [
-            self.edge_nodes(sheet, edge)
-            for sheet, graph in enumerate(self.graphs)
-            for edge in range(len(graph.edges))
-        ]
-        return np.concatenate([np.stack([r[:-1], r[1:]], axis=1) for r in rows])
+    def sides(self) -> tuple[Int[Array, "_ 2"], ...]:
+        """Both nodes of every part of an edge, for each sheet."""
+        return tuple(self._sides(sheet) for sheet in range(len(self.graphs)))
+
+    def _sides(self, sheet: int) -> Array:
+        n = len(self.graphs[sheet].edges)
+        rows = [self.edge_nodes(sheet, edge) for edge in range(n)]
+        pairs = [np.stack([row[:-1], row[1:]], axis=1) for row in rows]
+        return np.concatenate([np.zeros((0, 2), dtype=np.intp), *pairs])

@@ -7,7 +7,7 @@ import pytest
 from buildings import LEVELS, box, column, line, plate, slab, table
 
 from trundle.errors import InputError
-from trundle.structure import CONCRETE
+from trundle.structure import CONCRETE, OrthotropicSection
 from trundle.structure.building import (
     Beam,
     Brace,
@@ -25,6 +25,10 @@ from trundle.structure.building import (
 )
 
 SMALL = Profile.rectangle(0.3, 0.5, CONCRETE)
+RIBBED = OrthotropicSection(
+    bending=(2e7, 1e7, 2e6, 4e6), membrane=(1e9, 5e8, 1e8, 2e8), shear=(1e8, 1e8),
+    mass_per_area=300.0,
+)  # fmt: skip
 BOW_TIE = line((0, 0), (8, 6), (8, 0), (0, 6))
 
 
@@ -127,6 +131,9 @@ WRONG = {
     ),
     "a wall in the air": (
         table(walls=(wall((0, 0), (0, 6), base=None),)), "wall[1].base", "nothing under an end",
+    ),
+    "a ribbed wall": (
+        table(walls=(wall((0, 0), (0, 6), section=RIBBED),)), "wall[1].plate", "solid plate",
     ),
     "a wall in a plane of symmetry": (
         table(walls=(wall((0, 0), (0, 6)),), symmetry=(SymmetryPlane(axis=0, position=0.0),)),

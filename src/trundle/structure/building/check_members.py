@@ -14,6 +14,7 @@ from trundle.structure.building.parts import Building, Column
 from trundle.structure.building.sheets import meets
 from trundle.structure.mesh.planar import SNAP, on_segment
 from trundle.structure.mesh.polygons import covers, overlap, shared_length
+from trundle.structure.sections import ShellSection
 
 __all__ = ["joint_problems", "member_problems"]
 
@@ -99,6 +100,13 @@ def _diagonal(column: Column) -> float:
 
 def _walls(building: Building) -> Iterator[Problem]:
     for i, wall in enumerate(building.walls, start=1):
+        if not isinstance(wall.section, ShellSection):
+            yield Problem(
+                place=f"wall[{i}].plate",
+                value="ribbed, hollow, or of other stiffness along its axis than across it",
+                rule="a wall is a solid plate: the axis of such a plate lies level",
+                remedy="give its plate a thickness, and a stiffness_factor that makes it as stiff",
+            )
         if wall.base is None and not all(
             any(covers(s.outline, s.openings, end[None])[0] for s in building.slabs
                 if s.on == wall.bottom)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import frozen_array, positive, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
 
-__all__ = ["Base", "Held", "Mass", "Springs", "Support", "SymmetryPlane"]
+__all__ = ["Base", "Held", "Mass", "Springs", "Support", "SymmetryPlane", "share_inside"]
 
 Held: TypeAlias = tuple[bool, bool, bool, bool, bool, bool]
 """Which of ux, uy, uz, rx, ry, rz are held."""
@@ -19,6 +21,7 @@ Held: TypeAlias = tuple[bool, bool, bool, bool, bool, bool]
 Springs: TypeAlias = tuple[float, float, float, float, float, float]
 """Stiffness in each of the six [N/m], [N m/rad]."""
 
+_ON_PLANE = 1e-3  # m
 _FREE: Held = (False, False, False, False, False, False)
 _NO_SPRINGS: Springs = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -101,3 +104,22 @@ class SymmetryPlane:
 
     axis: int
     position: float
+
+
+def share_inside(
+    parts: Float[Array, "parts nodes axes"], planes: Sequence[SymmetryPlane]
+) -> Float[Array, " parts"]:
+    """Return what share of parts belongs to a model that ends at planes of symmetry.
+
+    Parameters
+    ----------
+    parts : ndarray of float, shape (n_parts, n_nodes, 2 or 3)
+        Where the nodes of each are [m]; what has all of them in a plane belongs to it by half.
+    planes : sequence of SymmetryPlane
+        Where the model ends.
+    """
+    share = np.ones(len(parts))
+    for plane in planes:
+        on = np.abs(parts[:, :, plane.axis] - plane.position) < _ON_PLANE
+        share[on.all(axis=1)] *= 0.5
+    return share

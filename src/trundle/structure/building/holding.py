@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from trundle._typing import Array
-from trundle.structure.building.held import Base
+from trundle.structure.building.held import Base, SymmetryPlane, share_inside
 from trundle.structure.building.nodes import Nodes
 from trundle.structure.building.parts import Building
 from trundle.structure.building.sheets import passes
@@ -37,7 +37,7 @@ def fixed_dofs(
         elif base == "pinned":
             fixed[some] |= _PINNED
     for support in building.supports:
-        fixed[_on_line(building, mesh, support.on, support.along)] |= np.array(support.held)
+        fixed[_pieces(building, mesh, support.on, support.along)[0]] |= np.array(support.held)
     for plane in building.symmetry:
         on = np.abs(xyz[:, plane.axis] - plane.position) < _ON_PLANE
         fixed[on] |= _mirrored(plane.axis)
@@ -61,40 +61,32 @@ def _feet(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[tuple[B
         for base, storey in ends:
             if base is not None:
                 node = nodes.at(storey, column.at, f"column {column.name!r}")
-                yield base, np.array([node]), np.ones(1)
+                yield base, np.array([node]), share_inside(column.at[None, None], building.symmetry)
     number = {name: i for i, name in enumerate(building.floors)}
     for wall in building.walls:
         if wall.base is not None:
             some = mesh.along(number[wall.bottom], wall.along)
-            yield wall.base, some, _tributary(mesh.nodes[some])
+            yield wall.base, some, _tributary(mesh.nodes[some], building.symmetry)
 
 
-def _on_line(building: Building, mesh: SheetMesh, on: str, along: Array) -> Array:
-    """Return the nodes of a sheet on a line or at a place."""
-    sheet = list(building.floors).index(on)
-    if len(along) == 1:
-        found = mesh.at(sheet, along[0])
-        return np.array([] if found is None else [found], dtype=np.intp)
-    pairs = pairwise(along)
-    return np.concatenate([mesh.along(sheet, np.stack(pair)) for pair in pairs])
-
-
-def _tributary(places: Array) -> Array:
+def _tributary(places: Array, planes: Sequence[SymmetryPlane]) -> Array:
     """Return the length of a line that belongs to each of its nodes [m]."""
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    steps *= share_inside(np.stack([places[:-1], places[1:]], axis=1), planes)
     return 0.5 * (np.concatenate([[0.0], steps]) + np.concatenate([steps, [0.0]]))
 
 
 def _pieces(building: Building, mesh: SheetMesh, on: str, along: Array) -> tuple[Array, Array]:
     """Return the nodes of a line or a place, and the length that belongs to each [m], or 1."""
-    if len(along) == 1:
-        some = _on_line(building, mesh, on, along)
-        return some, np.ones(len(some))
     sheet = list(building.floors).index(on)
+    if len(along) == 1:
+        found = mesh.at(sheet, along[0])
+        some = np.array([] if found is None else [found], dtype=np.intp)
+        return some, share_inside(mesh.nodes[some][:, None], building.symmetry)
     rows = [mesh.along(sheet, np.stack(pair)) for pair in pairwise(along)]
-    lengths = np.concatenate([_tributary(mesh.nodes[row]) for row in rows])
+    lengths = [_tributary(mesh.nodes[row], building.symmetry) for row in rows]
     some, place = np.unique(np.concatenate(rows), return_inverse=True)
-    return some, np.bincount(place, weights=lengths)
+    return some, np.bincount(place, weights=np.concatenate(lengths))
 
 
 def springs(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[SpringGroup]:
@@ -108,8 +100,7 @@ def springs(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[Sprin
             some, length = _pieces(building, mesh, support.on, support.along)
             found.append((support.name, some, length, np.array(support.springs)))
     for name, some, length, stiffness in found:
-        for share in np.unique(np.round(length, 9)):
-            at = some[np.round(length, 9) == share]
+        for share, at in _alike(some, length):
             ends = np.stack([at, np.full(len(at), GROUND)], axis=1)
             yield SpringGroup(elements=ends, stiffness=share * stiffness, name=name)
 
@@ -117,16 +108,21 @@ def springs(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[Sprin
 def masses(building: Building, mesh: SheetMesh) -> Iterator[PointMasses]:
     """Give point masses, those of lines by the length that belongs to each node."""
     for mass in building.masses:
-        some, length = _pieces(building, mesh, mass.on, mass.along)
-        for share in np.unique(np.round(length, 9)):
-            at = some[np.round(length, 9) == share]
-            yield PointMasses(nodes=at, mass=float(share) * mass.mass, name=mass.name)
+        for share, at in _alike(*_pieces(building, mesh, mass.on, mass.along)):
+            yield PointMasses(nodes=at, mass=share * mass.mass, name=mass.name)
+
+
+def _alike(nodes: Array, lengths: Array) -> Iterator[tuple[float, Array]]:
+    """Give lengths, and the nodes that have them."""
+    rounded = np.round(lengths, 9)
+    for length in np.unique(rounded):
+        yield float(length), nodes[rounded == length]
 
 
 def heads(building: Building, mesh: SheetMesh, nodes: Nodes) -> tuple[RigidLinks, ...]:
     """Return which nodes of slabs lie in the cross-section of a column, and follow its axis."""
     leads, behind = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)]
-    storeys = {s.name: i for i, s in enumerate(building.storeys)}
+    there = {s.name: mesh.of(i) for i, s in enumerate(building.storeys)}
     for column in building.columns:
         if column.head == "point":
             continue
@@ -134,7 +130,7 @@ def heads(building: Building, mesh: SheetMesh, nodes: Nodes) -> tuple[RigidLinks
             if not passes(building, column, storey.name):
                 continue
             head = nodes.at(storey.name, column.at, f"column {column.name!r}")
-            some = mesh.hard[storeys[storey.name]]
+            some = there[storey.name]
             near = np.abs(mesh.nodes[some, :2] - column.at).max(axis=1)
             some = some[near <= np.hypot(column.profile.depth, column.profile.width)]
             follow = some[covers(column.footprint, (), mesh.nodes[some, :2])]

@@ -217,6 +217,10 @@ MISTAKES = {
         "route[1].path[1]", "over no slab from (10.1, 3) to (11.9, 3) m",
     ),
     "a route on the ground": (('on = "deck"\npath', 'on = "ground"\npath'), "route[1].on", "storey"),
+    "too fine along routes": (
+        ('mesh_size = "1.5 m"', 'mesh_size = "1.5 m"\nsize_at_routes = "1 cm"'),
+        "building.mesh_size", "nodes where it is refined",
+    ),
     "a mesh too fine": (('"1.5 m"', '"0.02 m"'), "building.mesh_size", "may have 100000 nodes"),
     "both a floor and a building": (
         ("[building]\n", '[floor]\nkind = "reference_unit"\n\n[building]\n'),

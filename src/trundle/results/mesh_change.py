@@ -13,7 +13,7 @@ from trundle.signals import nominal_frequency
 
 __all__ = ["MeshChange", "mesh_warnings", "mesh_words"]
 
-_LEFT = 1.0 / 3.0  # of a change from 2 h to h: the error at h, if it goes with h squared
+_LEFT = 1.0  # of a change from 2 h to h: the error at h, if it goes with h, as at columns' heads
 _SETTLED_LEVEL = 0.10
 _SETTLED_FREQUENCY = 0.03
 
@@ -73,11 +73,24 @@ def mesh_words(change: MeshChange) -> str:
             f", and band levels by up to {100.0 * np.nanmax(levels):.2g} % "
             f"({change.cases[case]}, {change.points[point]}, {f:g} Hz)"
         )
-    return f"{text}; errors go with the size squared, so that about a third of it is left"
+    return f"{text}; as much again may be left"
 
 
-def mesh_warnings(change: MeshChange) -> tuple[FitnessWarning, ...]:
-    """Return the doubt about results that have not settled on the study's mesh."""
+def mesh_warnings(change: MeshChange | None) -> tuple[FitnessWarning, ...]:
+    """Return the doubt about results that have not settled on the mesh of a study of a building.
+
+    Errors of smooth floors go with the size squared, and a third of a change would be left; round
+    the heads of columns in a flat slab they go with the size itself, and all of it is.
+    """
+    if change is None:
+        return (
+            FitnessWarning(
+                subject="mesh",
+                message="whether levels have settled was not looked at, as the study could not be "
+                "run on a mesh twice as coarse; run it with half the mesh_size before a small "
+                "margin is relied on",
+            ),
+        )
     levels = change.level_changes()
     worst = float(np.nanmax(levels)) if np.isfinite(levels).any() else 0.0
     settled = _LEFT * worst <= _SETTLED_LEVEL

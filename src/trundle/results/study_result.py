@@ -107,7 +107,7 @@ class StudyResult:
                 *_map_warnings(self.study, assessment.percentile),
                 *assumption_warnings(self.study),
                 *study_doubts(self.study),
-                *(() if self.mesh is None else mesh_warnings(self.mesh)),
+                *(() if self.study.building is None else mesh_warnings(self.mesh)),
                 *(w for case in self.study.cases for w in early_end_warnings(self.study, case)),
             )
             by_method[assessment.method].update(dict.fromkeys(doubts))

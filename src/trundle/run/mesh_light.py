@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from trundle._progress import Tell
+from trundle.dynamics import Modes
+from trundle.errors import TrundleError
 from trundle.results.cells import Cell, CellKey
 from trundle.results.mesh_change import MeshChange
 from trundle.results.study_result import StudyResult
@@ -22,11 +24,14 @@ _MODES = 8
 def mesh_change(
     study: Study,
     cells: Mapping[CellKey, Cell],
-    frequencies: np.ndarray,
+    modes: Modes | None,
     run: Callable[[Study, Tell], StudyResult],
     tell: Tell,
 ) -> MeshChange | None:
-    """Return what a mesh twice as coarse changes; None for a floor that came as a mesh, or a plan.
+    """Return what a mesh twice as coarse changes.
+
+    None for a floor that came as a mesh or a plan, for studies that assess nothing, and where no
+    model can be made or run with elements twice as large.
 
     Parameters
     ----------
@@ -34,8 +39,8 @@ def mesh_change(
         A study of a building, run.
     cells : mapping of CellKey to Cell
         Its results.
-    frequencies : ndarray of float
-        Its natural frequencies [Hz].
+    modes : Modes or None
+        Its modes, where methods use them.
     run : callable
         Runs a study.
     tell : callable
@@ -43,32 +48,42 @@ def mesh_change(
     """
     if study.building is None or study.assessment is None:
         return None
-    method, road = study.assessment.method, next(iter(study.roads))
-    cases = tuple(case for case in study.cases if len(case.routes) == 1)
-    runs = min(_RUNS, study.runs)
-    coarse = replace(
+    try:
+        coarse = _coarse(study, study.assessment.method)
+        found = run(coarse, lambda what, done: tell(f"mesh twice as coarse: {what}", done))
+    except TrundleError:  # what is computed stands, with the doubt that nobody has looked
+        return None
+    (road,), (method,) = coarse.roads, coarse.methods
+    keys = [CellKey(case.name, road, method.name) for case in coarse.cases]
+    both = [[one[key] for key in keys] for one in (found.cells, cells)]
+    frequencies = [
+        np.zeros(0) if one is None else one.frequencies[:_MODES] for one in (found.modes, modes)
+    ]
+    n = min(map(len, frequencies))
+    return MeshChange(
+        sizes=(coarse.mesh_size, study.mesh_size),
+        frequencies=np.stack([some[:n] for some in frequencies]),
+        cases=tuple(case.name for case in coarse.cases),
+        points=tuple(study.points),
+        bands=both[1][0].spectra.mid_band,
+        levels=np.array([[_levels(cell, coarse.runs) for cell in some] for some in both]),
+    )
+
+
+def _coarse(study: Study, method: str) -> Study:
+    """Return a study on a mesh twice as coarse: the assessed method, one road, a few runs."""
+    road = next(iter(study.roads))
+    alone = tuple(case for case in study.cases if len(case.routes) == 1)
+    return replace(
         study.meshed(2.0),
         building=None,  # or it would be looked at in its turn
-        runs=runs,
-        cases=cases,
+        runs=min(_RUNS, study.runs),
+        cases=alone or study.cases[:1],
         roads={road: study.roads[road]},
         methods=tuple(m for m in study.methods if m.name == method),
         map=None,
         printed=(),
         printed_bounds=(),
-    )
-    found = run(coarse, lambda what, done: tell(f"mesh twice as coarse: {what}", done))
-    keys = [CellKey(case.name, road, method) for case in cases]
-    both = [[one[key] for key in keys] for one in (found.cells, cells)]
-    n = min(_MODES, len(frequencies), 0 if found.modes is None else found.modes.n_modes)
-    coarse_f = np.zeros(0) if found.modes is None else found.modes.frequencies
-    return MeshChange(
-        sizes=(coarse.mesh_size, study.mesh_size),
-        frequencies=np.stack([coarse_f[:n], np.asarray(frequencies)[:n]]),
-        cases=tuple(case.name for case in cases),
-        points=tuple(study.points),
-        bands=both[1][0].spectra.mid_band,
-        levels=np.array([[_levels(cell, runs) for cell in some] for some in both]),
     )
 
 

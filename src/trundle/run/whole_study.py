@@ -80,9 +80,7 @@ def run_study(
     with nullcontext(executor) if executor is not None else Threads() as who:
         carry_out(batches, who, store, Bar(tell, share, costs))
     result = _result(study, jobs, store, modes)
-    if modes is not None:
-        change = mesh_change(study, result.cells, modes.frequencies, _run, tell)
-        result = replace(result, mesh=change)
+    result = replace(result, mesh=mesh_change(study, result.cells, modes, _run, tell))
     tell("done", 1.0)
     return result
 

@@ -78,14 +78,19 @@ class SlabSection(Section):
     panel: Flag = False
 
 
-class BeamSection(Section):
+class BeamMake(Section):
+    """What a beam is, wherever it runs."""
+
+    section: Name
+    below: Flag = True
+    hinged: Literal["none", "start", "end", "both"] = "none"
+
+
+class BeamSection(BeamMake):
     """A beam along a line, below the slab or in its plane."""
 
     on: Name
-    section: Name
     along: Path
-    below: Flag = True
-    hinged: Literal["none", "start", "end", "both"] = "none"
 
 
 class SpringsSection(Section):
@@ -107,27 +112,37 @@ class LineSpringsSection(Section):
     uz: StiffnessPerMetre = 0.0
 
 
-class ColumnSection(Section):
-    """A column at one place or several, from storey to storey."""
+class ColumnMake(Section):
+    """What a column is, wherever it stands."""
 
     section: Name
-    at: Places | Literal["grid"]
     from_: Annotated[Name, Field(alias="from")]
     to: Name
-    angle: Angle = 0.0
     base: Literal["fixed", "pinned"] | SpringsSection | None = None
     cap: Literal["fixed", "pinned"] | SpringsSection | None = None
     head: Literal["rigid", "point"] = "rigid"
 
 
-class WallSection(Section):
-    """A wall along a line, from storey to storey."""
+class ColumnSection(ColumnMake):
+    """A column at one place or several, from storey to storey."""
+
+    at: Places | Literal["grid"]
+    angle: Angle = 0.0
+
+
+class WallMake(Section):
+    """What a wall is, wherever it runs."""
 
     plate: Name
-    along: Path
     from_: Annotated[Name, Field(alias="from")]
     to: Name
     base: Literal["fixed", "pinned"] | LineSpringsSection | None = None
+
+
+class WallSection(WallMake):
+    """A wall along a line, from storey to storey."""
+
+    along: Path
 
 
 class BraceSection(Section):
@@ -187,69 +202,55 @@ class RefineSection(Section):
     reach: PositiveLength = 1.0
 
 
-class DrawnSlabs(Section):
-    """Slabs that a layer outlines."""
+class Layer(Section):
+    """A layer of a drawing."""
 
     layer: Line
+
+    @property
+    def own(self) -> dict[str, Any]:
+        """What it says of each part that it shows."""
+        return {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
+
+
+class DrawnSlabs(Layer):
+    """Slabs that a layer outlines."""
+
     plate: Name
     panel: Flag = False
 
     def table(self, **drawn: Any) -> SlabSection:
         """Return the table of one of them."""
-        return SlabSection.model_construct(plate=self.plate, panel=self.panel, **drawn)
+        return SlabSection.model_construct(**self.own, **drawn)
 
 
-class DrawnOpenings(Section):
+class DrawnOpenings(Layer):
     """Openings that a layer outlines, in whichever slab they lie."""
 
-    layer: Line
 
-
-class DrawnColumns(Section):
+class DrawnColumns(Layer, ColumnMake):
     """Columns that a layer shows by outlines, circles or points."""
-
-    layer: Line
-    section: Name
-    from_: Annotated[Name, Field(alias="from")]
-    to: Name
-    base: Literal["fixed", "pinned"] | SpringsSection | None = None
-    cap: Literal["fixed", "pinned"] | SpringsSection | None = None
-    head: Literal["rigid", "point"] = "rigid"
 
     def table(self, **drawn: Any) -> ColumnSection:
         """Return the table of one of them."""
-        own = {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
-        return ColumnSection.model_construct(**own, **drawn)
+        return ColumnSection.model_construct(**self.own, **drawn)
 
 
-class DrawnBeams(Section):
+class DrawnBeams(Layer, BeamMake):
     """Beams along the lines of a layer."""
-
-    layer: Line
-    section: Name
-    below: Flag = True
-    hinged: Literal["none", "start", "end", "both"] = "none"
 
     def table(self, **drawn: Any) -> BeamSection:
         """Return the table of one of them."""
-        own = {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
-        return BeamSection.model_construct(**own, **drawn)
+        return BeamSection.model_construct(**self.own, **drawn)
 
 
-class DrawnWalls(Section):
+class DrawnWalls(Layer, WallMake):
     """Walls along the lines of a layer."""
-
-    layer: Line
-    plate: Name
-    from_: Annotated[Name, Field(alias="from")]
-    to: Name
-    base: Literal["fixed", "pinned"] | LineSpringsSection | None = None
 
     def table(self, *, along: tuple[tuple[float, float], ...], on: str) -> WallSection:
         """Return the table of one of them; where it stands is said by its storeys."""
         del on
-        own = {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
-        return WallSection.model_construct(**own, along=along)
+        return WallSection.model_construct(**self.own, along=along)
 
 
 class DrawingSection(Section):

@@ -18,7 +18,7 @@ from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure import FloorPlan, Structure
-from trundle.structure.mesh import quality_of
+from trundle.study.doubts_mesh import quality_of_mesh
 from trundle.study.model import Study
 
 __all__ = ["drawings"]
@@ -69,12 +69,7 @@ def _quality_words(study: Study) -> str:
     """Say how well elements are shaped, where a mesher made them."""
     if study.building is None:
         return ""
-    found = quality_of(
-        surface.frame.coordinates(surface.nodes)[elements][:, :, :2]
-        for surface in study.floor.surfaces.values()
-        for _, elements in surface.parts
-        if elements.shape[1] > 2
-    )
+    found = quality_of_mesh(study)
     return (
         f" {found.n_quads} quadrilaterals and {found.n_triangles} triangles, corners of "
         f"{found.least_angle:.0f} to {found.largest_angle:.0f} degrees, sides up to "

@@ -99,10 +99,12 @@ class ContactShape(Protocol):
 
 @dataclass(frozen=True)
 class Hermite:
-    """Interpolate deflection with the nodes' rotations, smooth across element borders.
+    """Interpolate deflection with the nodes' rotations.
 
     On a rectangle this is the bicubic Hermite surface without twist at the nodes: deflection
-    and slope are continuous, so a wheel does not rattle over mesh lines.
+    and slope are continuous, so a wheel does not rattle over mesh lines. Between elements of other
+    shapes deflection is continuous, and its slope along their border; the slope across it steps
+    by what the mesh leaves.
     """
 
     @property
@@ -121,7 +123,7 @@ class Hermite:
 
     def __str__(self) -> str:
         """Describe the interpolation for a report."""
-        return "smooth (C1 Hermite)"
+        return "smooth (cubic Hermite)"
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ class MeshQuality:
     share_of_quads: float
 
 
-def quality_of(shapes: Iterable[Float[Array, "_ corners 2"]]) -> MeshQuality:
+def quality_of(shapes: Iterable[Float[Array, "_ _ 2"]]) -> MeshQuality:
     """Measure groups of elements, given the corners of each in their plane [m]."""
     groups = [shape for shape in shapes if len(shape)]
     turns = np.degrees(np.concatenate([angles(shape).ravel() for shape in groups]))

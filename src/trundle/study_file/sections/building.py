@@ -50,10 +50,10 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         return draft, found
     wrong = (_placed(problem, origins) for problem in building_problems(building))
     found += [_as_drawn(problem, drawn) for problem in wrong]
-    found += _too_fine(section, building)
+    meshing = _meshing(draft, section, building)
+    found += _too_fine(building, meshing)
     if found:
         return draft, found
-    meshing = _meshing(draft, section, building)
     floor, found = _floor(building, meshing)
     size = float(section.mesh_size)
     draft = replace(draft, building=building, meshing=meshing, model=floor, mesh_size=size)
@@ -139,16 +139,31 @@ def _placed(problem: Problem, origins: Origins) -> Problem:
     return replace(problem, place=f"building.{kind}[{entry}]{key}")
 
 
-def _too_fine(section: BuildingSection, building: Building) -> Iterator[Problem]:
+def _too_fine(building: Building, meshing: Meshing) -> Iterator[Problem]:
     area = sum(slab.area for slab in (*building.slabs, *building.ramps))
-    nodes = area / section.mesh_size**2
+    size = meshing.mesh_size
+    refined = sum(_more_nodes(one, size, area, len(building.floors)) for one in meshing.refinements)
+    nodes = area / size**2 + refined
     if nodes > _MAX_NODES:
+        alone = refined > _MAX_NODES / 2
         yield Problem(
             place="building.mesh_size",
-            value=f"{section.mesh_size:g} m",
+            value=f"{size:g} m"
+            + (f", with {refined:.3g} nodes where it is refined" if alone else ""),
             rule=f"the mesh may have {_MAX_NODES} nodes; this one would have {nodes:.3g}",
-            remedy=f"use {np.ceil(100.0 * np.sqrt(area / _MAX_NODES)) / 100.0:g} m or more",
+            remedy="refine less, or shorter lines"
+            if alone
+            else f"use {np.ceil(100.0 * np.sqrt(area / _MAX_NODES)) / 100.0:g} m or more",
         )
+
+
+def _more_nodes(one: Refinement, size: float, area: float, n_floors: int) -> float:
+    """Return about how many nodes a refinement adds: within its reach, and where elements grow."""
+    length = float(np.linalg.norm(np.diff(one.line, axis=0), axis=1).sum())
+    fine = size / 2.0 ** np.ceil(max(np.log2(size / one.size), 0.0))  # elements are halved
+    within = min(2.0 * length * one.reach + np.pi * one.reach**2, area) / fine**2
+    beyond = 4.0 * (length + np.pi * one.reach) * (1.0 / fine - 1.0 / size)
+    return (within + beyond) * (n_floors if one.sheet is None else 1)
 
 
 def _meshing(draft: Draft, section: BuildingSection, building: Building) -> Meshing:

@@ -1,0 +1,48 @@
+"""Slivers of a mesh are told with their place, and sound meshes are not doubted."""
+
+import numpy as np
+import pytest
+
+import trundle as tr
+from studies import BUILDING
+from trundle.study.doubts import study_doubts
+from trundle.study.doubts_mesh import quality_of_mesh
+
+BEAM = """
+[[building.beam]]
+on = "deck"
+section = "steel"
+along = [["3 m", "1 m"], ["7 m", "{y} m"]]
+
+[[building.beam]]
+on = "deck"
+section = "steel"
+along = [["3 m", "1.02 m"], ["7 m", "1.5 m"]]
+"""
+
+
+def mesh_doubts(text):
+    study = tr.study_from_text(text)
+    return study, [d.message for d in study_doubts(study) if "hardly any room" in d.message]
+
+
+def test_a_sound_mesh_is_not_doubted():
+    study, doubts = mesh_doubts(BUILDING)
+    assert doubts == []
+    assert quality_of_mesh(study).least_angle > 5.0
+
+
+@pytest.mark.parametrize(("y", "told"), [("1", 1), ("1.48", 1)])
+def test_beams_that_begin_2_cm_apart_leave_slivers_which_are_told(y, told):
+    """An edge of 20 mm beside elements of a metre: a corner of atan(0.02) = 1.1 degrees, or 50 : 1."""
+    study, doubts = mesh_doubts(
+        BUILDING.replace("[[building.column]]", BEAM.format(y=y) + "\n[[building.column]]", 1)
+    )
+    assert len(doubts) == told
+    assert "of 'deck'" in doubts[0]
+    x, at = (float(part) for part in doubts[0].split("(")[1].split(")")[0].split(","))
+    assert 2.0 < x < 8.0
+    assert 0.9 < at < 1.6
+    found = quality_of_mesh(study)
+    assert found.least_angle < 5.0 or found.largest_aspect > 20.0
+    assert np.isfinite(found.largest_angle)

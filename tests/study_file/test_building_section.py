@@ -217,6 +217,18 @@ MISTAKES = {
         "route[1].path[1]", "over no slab from (10.1, 3) to (11.9, 3) m",
     ),
     "a route on the ground": (('on = "deck"\npath', 'on = "ground"\npath'), "route[1].on", "storey"),
+    "a plane of symmetry of no kind": (
+        ("[[building.column]]", '[[building.symmetry]]\naxis = "x"\n\n[[building.column]]'),
+        "building.symmetry[1]", "across an axis at a place",
+    ),
+    "springs that are turned": (
+        (
+            "[[building.column]]",
+            '[[building.support]]\non = "deck"\nat = [["1 m", "1 m"]]\nangle = "30 deg"\n'
+            'springs = { ux = "1 MN/m" }\n\n[[building.column]]',
+        ),
+        "building.support[1].angle", "springs act along x, y and z",
+    ),
     "too fine along routes": (
         ('mesh_size = "1.5 m"', 'mesh_size = "1.5 m"\nsize_at_routes = "1 cm"'),
         "building.mesh_size", "nodes where it is refined",
@@ -241,6 +253,18 @@ def test_a_mistake_is_told_with_its_place_and_line(name):
     assert any(words in f"{p.value} {p.rule}" for p in found)
     assert all(p.line for p in found)
     assert all(p.remedy for p in found)
+
+
+def test_a_plane_of_symmetry_runs_along_two_places():
+    """Along the edge at y = 0 it holds what the plane across y at 0 holds."""
+    table = "[[building.symmetry]]\n{}\n\n[[building.column]]"
+    by_axis, by_places = (
+        loaded(("[[building.column]]", table.format(text))).floor
+        for text in ('axis = "y"\nat = "0 m"', 'along = ["A/1", "C/1"]')
+    )
+    assert np.array_equal(by_axis.fixed, by_places.fixed)
+    assert by_places.angles is None
+    assert by_axis.fixed.sum() > loaded().floor.fixed.sum()
 
 
 def test_a_mistake_of_one_column_among_many_names_it():

@@ -237,10 +237,9 @@ def _turned(weights: Array, turn: Array) -> Array:
 def _load_share(floor: Structure, surface: Surface, places: Array, directions: Array) -> Array:
     share = np.ones(len(places))
     for mirror in floor.mirrors:
-        at = surface.frame.in_space(places)[:, mirror.axis]
+        away = mirror.away(surface.frame.in_space(places))
         # A wheel that only crosses the plane is on it for no time at all.
         towards = directions @ np.array([surface.frame.x_axis, surface.frame.y_axis])
-        along = np.abs(towards[:, mirror.axis]) < _ON_PLANE
-        in_plane = np.abs(at - mirror.position) < _ON_PLANE
-        share[in_plane & along] *= 0.5
+        along = np.abs(towards[:, :2] @ mirror.normal) < _ON_PLANE
+        share[(np.abs(away) < _ON_PLANE) & along] *= 0.5
     return share

@@ -21,7 +21,7 @@ from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Elements
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.spring import SpringGroup
-from trundle.structure.links import RigidLinks, expansion_of, follows
+from trundle.structure.links import RigidLinks, expansion_of, follows, own_motion
 from trundle.structure.model import MirrorPlane
 from trundle.structure.surface import Surface, check_names, found_surface, named_surface
 
@@ -43,6 +43,10 @@ class Floor:
         Coordinates [m], z up.
     fixed : ndarray of bool, shape (n_nodes, 6)
         True where a dof is held by a support or a symmetry plane.
+    angles : ndarray of float, shape (n_nodes, 2), or None
+        By how much the axes of each node's translations, and of its rotations, are turned about z
+        [rad], where supports hold along other axes than x and y; `fixed` and `dof_index` speak of
+        turned axes there.
     shells, beams, springs, masses : tuple of groups
         The elements.
     others : tuple of Elements
@@ -65,6 +69,7 @@ class Floor:
 
     nodes: Float[Array, "nodes 3"]
     fixed: Bool[Array, "nodes 6"]
+    angles: Float[Array, "nodes 2"] | None = None
     shells: tuple[ShellGroup, ...] = ()
     beams: tuple[BeamGroup, ...] = ()
     springs: tuple[SpringGroup, ...] = ()
@@ -80,6 +85,8 @@ class Floor:
         nodes = frozen_array("nodes", self.nodes, shape=(None, 3))
         fixed = frozen_array("fixed", self.fixed, shape=(len(nodes), 6), dtype=np.bool_)
         set_frozen(self, nodes=nodes, fixed=fixed)
+        if self.angles is not None:
+            set_frozen(self, angles=frozen_array("angles", self.angles, shape=(len(nodes), 2)))
         if not (self.shells or self.beams or self.others):
             raise InputError("a floor needs at least one group of shells, beams or other elements")
         for group in self.elements:
@@ -124,9 +131,9 @@ class Floor:
 
     @cached_property
     def _expansion(self) -> SparseMatrix | None:
-        if not self.links:
+        if not self.links and self.angles is None:
             return None
-        return expansion_of(self.nodes, self._leader, self.dof_index, self.fixed)
+        return expansion_of(self.nodes, self._leader, self.dof_index, self.fixed, self.angles)
 
     @cached_property
     def _leader(self) -> Int[Array, " nodes"]:
@@ -189,10 +196,9 @@ class Floor:
 
     def rigid_vector(self, dof: int) -> Float[Array, " dofs"]:
         """Return the vector of ones in one of the six dofs, over the free dofs."""
-        vector = np.zeros(self.n_dofs)
-        rows = self.dof_index[:, dof]
-        vector[rows[rows >= 0]] = 1.0
-        return vector
+        in_space = np.zeros(self.fixed.size)
+        in_space[dof::6] = 1.0
+        return in_space @ own_motion(self.dof_index, self.n_dofs, self.angles)
 
     def inertia_of(self, dof: int) -> Float[Array, " dofs"]:
         """Return the forces of inertia of a unit acceleration of all free dofs of a kind [kg]."""

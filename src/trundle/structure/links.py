@@ -18,7 +18,9 @@ from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array, SparseMatrix
 from trundle.errors import InputError
 
-__all__ = ["RigidLinks", "expansion_of", "follows"]
+__all__ = ["RigidLinks", "expansion_of", "follows", "own_motion"]
+
+_MOVED = 1e-9  # by a unit motion of the node that is followed
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,6 +71,7 @@ def expansion_of(
     leader: Int[Array, " nodes"],
     index: Int[Array, "nodes 6"],
     fixed: Bool[Array, "nodes 6"],
+    angles: Float[Array, "nodes 2"] | None = None,
 ) -> SparseMatrix:
     """Return the motion of all nodes by the free dofs, (6 n_nodes, n_dofs).
 
@@ -82,6 +85,8 @@ def expansion_of(
         Row of each dof that moves by itself, -1 for others.
     fixed : ndarray of bool, shape (n_nodes, 6)
         What supports hold.
+    angles : ndarray of float, shape (n_nodes, 2), optional
+        How far each node's own axes are turned, see `own_motion`.
 
     Raises
     ------
@@ -89,26 +94,66 @@ def expansion_of(
         A node that follows is held in a dof in which the one that leads moves it.
     """
     n_dofs = int(index.max()) + 1
-    own = index.ravel() >= 0
-    rows, columns = [np.flatnonzero(own)], [index.ravel()[own]]
-    values = [np.ones(int(own.sum()))]
+    own = own_motion(index, n_dofs, angles)
     behind = np.flatnonzero(leader >= 0)
     arm = nodes[behind] - nodes[leader[behind]]
-    lead = index[leader[behind]]
+    rows, columns, values = [], [], []
     for dof, on, factor in _rigid_motion(arm):
-        moves = (lead[:, on] >= 0) & (factor != 0.0)
-        held = moves & fixed[behind, dof]
-        if np.any(held):
-            raise InputError(
-                f"rigid links: node {behind[int(np.argmax(held))]} is held, and follows a node "
-                "that moves: hold the one that leads"
-            )
-        rows.append(6 * behind[moves] + dof)
-        columns.append(lead[moves, on])
-        values.append(factor[moves])
+        rows.append(6 * behind + dof)
+        columns.append(6 * leader[behind] + on)
+        values.append(factor)
     at = (np.concatenate(rows), np.concatenate(columns))
-    shape = (6 * len(nodes), n_dofs)
-    return sparse.coo_array((np.concatenate(values), at), shape=shape).tocsr()
+    shape = (6 * len(nodes), 6 * len(nodes))
+    carried = sparse.coo_array((np.concatenate(values), at), shape=shape).tocsr() @ own
+    _check_held(carried, fixed, angles, leader)
+    return (own + carried).tocsr()
+
+
+def own_motion(
+    index: Int[Array, "nodes 6"], n_dofs: int, angles: Float[Array, "nodes 2"] | None
+) -> SparseMatrix:
+    """Return the motion of nodes in space, (6 n_nodes, n_dofs), by dofs along their own axes.
+
+    Parameters
+    ----------
+    index : ndarray of int, shape (n_nodes, 6)
+        Row of each dof, -1 for those that are none.
+    n_dofs : int
+        How many there are.
+    angles : ndarray of float, shape (n_nodes, 2), optional
+        By how much the axes of each node's translations, and of its rotations, are turned about z
+        [rad]; by nothing, if not given.
+    """
+    n = len(index)
+    c, s = np.ones((n, 2)), np.zeros((n, 2))
+    if angles is not None:
+        c, s = np.cos(angles), np.sin(angles)
+    rows, columns, values = [], [], []
+    for first, kind in ((0, 0), (3, 1)):
+        cosine, sine, one = c[:, kind], s[:, kind], np.ones(n)
+        for to, by, factor in (
+            (0, 0, cosine), (1, 0, sine), (0, 1, -sine), (1, 1, cosine), (2, 2, one),
+        ):  # fmt: skip
+            dof = index[:, first + by]
+            some = np.flatnonzero((dof >= 0) & (factor != 0.0))
+            rows.append(6 * some + first + to)
+            columns.append(dof[some])
+            values.append(factor[some])
+    at = (np.concatenate(rows), np.concatenate(columns))
+    return sparse.coo_array((np.concatenate(values), at), shape=(6 * n, n_dofs)).tocsr()
+
+
+def _check_held(carried: SparseMatrix, fixed: Array, angles: Array | None, leader: Array) -> None:
+    """Refuse nodes that are moved by the one they follow in what supports hold."""
+    numbers = np.arange(fixed.size).reshape(-1, 6)
+    along_own = own_motion(numbers, fixed.size, angles).T @ carried
+    held = np.flatnonzero((fixed & (leader >= 0)[:, None]).ravel())
+    moved = abs(along_own[held]).max(axis=1).toarray().ravel() > _MOVED
+    if np.any(moved):
+        raise InputError(
+            f"rigid links: node {held[int(np.argmax(moved))] // 6} is held, and follows a node "
+            "that moves: hold the one that leads"
+        )
 
 
 def _rigid_motion(arm: Array) -> list[tuple[int, int, Array]]:

@@ -10,6 +10,7 @@ from jaxtyping import Float, Int
 from trundle._typing import Array
 from trundle.structure.elements import GROUND, SpringGroup
 from trundle.structure.floor import Floor
+from trundle.structure.links import own_motion
 from trundle.structure.mesh.merging import linked
 
 __all__ = ["loose_parts"]
@@ -68,14 +69,15 @@ def _held(floor: Floor, part: Array) -> Float[Array, "parts 6 6"]:
     size = max(float(np.ptp(floor.nodes, axis=0).max()), 1.0)
     r = (floor.nodes - middle) / size
     node, dof = np.nonzero(floor.fixed)
-    nodes, dofs = [node], [dof]
+    own = own_motion(np.arange(floor.fixed.size).reshape(-1, 6), floor.fixed.size, floor.angles)
+    along_own = own.T @ _rigid(r).reshape(-1, 6)
+    nodes, motions = [node], [along_own[6 * node + dof]]
     for group in floor.springs:
         for row, stiff in _grounded(group):
             nodes.append(np.full(int(stiff.sum()), row))
-            dofs.append(np.flatnonzero(stiff))
-    node, dof = np.concatenate(nodes), np.concatenate(dofs)
-    node, dof = node[part[node] >= 0], dof[part[node] >= 0]
-    rows = _rigid(r[node])[np.arange(len(node)), dof]
+            motions.append(_rigid(r[[row]])[0, stiff])
+    node, rows = np.concatenate(nodes), np.concatenate(motions)
+    node, rows = node[part[node] >= 0], rows[part[node] >= 0]
     out = np.zeros((int(part.max(initial=-1)) + 1, 6, 6))
     np.add.at(out, part[node], rows[:, :, None] * rows[:, None, :])
     return out

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
 
+from trundle._checks import frozen_array, positive, set_frozen
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes
@@ -19,7 +20,7 @@ from trundle.structure.surface import Surface
 __all__ = ["MirrorPlane", "Structure", "node_motion"]
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class MirrorPlane:
     """Hold a vertical plane of symmetry, at which the modelled part of a building ends.
 
@@ -27,14 +28,55 @@ class MirrorPlane:
 
     Attributes
     ----------
-    axis : int
-        Axis normal to the plane: 0 for x, 1 for y.
+    normal : ndarray of float, shape (2,)
+        Across the plane, in plan, of unit length.
     position : float
-        Where the plane cuts that axis [m].
+        Where it lies along its normal, from the origin [m].
     """
 
-    axis: int
+    normal: Float[Array, " 2"]
     position: float
+
+    def __post_init__(self) -> None:
+        """Freeze the normal, and make it one."""
+        normal = frozen_array("normal", self.normal, shape=(2,))
+        length = positive("length of normal", float(np.hypot(*normal)))
+        set_frozen(self, normal=frozen_array("normal", normal / length, shape=(2,)))
+
+    @classmethod
+    def across(cls, axis: int, position: float) -> MirrorPlane:
+        """Return the plane across x (0) or y (1) at a place [m]."""
+        return cls(normal=np.eye(2)[axis], position=position)
+
+    @classmethod
+    def through(cls, line: Float[Array, "2 2"]) -> MirrorPlane:
+        """Return the plane through two places of the plan [m]."""
+        along = line[1] - line[0]
+        normal = np.array([along[1], -along[0]]) / np.hypot(*along)
+        return cls(normal=normal, position=float(normal @ line[0]))
+
+    def away(self, places: Float[Array, "*some axes"]) -> Float[Array, "*some"]:
+        """Return how far on the side of its normal places are, in plan or in space [m]."""
+        return places[..., :2] @ self.normal - self.position
+
+    def facing(self, places: Float[Array, "places axes"]) -> MirrorPlane:
+        """Return the same plane with its normal to the side on which most of some places lie."""
+        if self.away(places).sum() >= 0.0:
+            return self
+        return MirrorPlane(normal=-self.normal, position=-self.position)
+
+    def angle_to(self, other: MirrorPlane) -> float:
+        """Return the angle between two planes, on the sides that their normals point to [rad]."""
+        return float(np.pi - np.arccos(np.clip(self.normal @ other.normal, -1.0, 1.0)))
+
+    def __str__(self) -> str:
+        """Say where it is."""
+        for name, one in zip("xy", np.eye(2), strict=True):
+            if abs(self.normal @ one) == 1.0:
+                return f"{name} = {self.position * (self.normal @ one):g} m"
+        x, y = self.normal * self.position
+        along = np.degrees(np.arctan2(self.normal[1], self.normal[0])) + 90.0
+        return f"through ({x:g}, {y:g}) m along {along:g} degrees"
 
 
 @runtime_checkable

@@ -243,7 +243,7 @@ def _heads(plan: FloorPlan, x: Array, y: Array, grid: Array) -> tuple[RigidLinks
 def _mirrors(plan: FloorPlan) -> tuple[MirrorPlane, ...]:
     places = (*plan.x_extent, *plan.y_extent)
     return tuple(
-        MirrorPlane(axis=0 if edge.startswith("x") else 1, position=place)
+        MirrorPlane.across(0 if edge.startswith("x") else 1, place)
         for edge, place in zip(EDGES, places, strict=True)
         if plan.edges.get(edge) == "symmetry"
     )

@@ -172,6 +172,7 @@ class SupportSection(Section):
     along: Path | None = None
     at: Places | None = None
     hold: Literal["roller", "pinned", "fixed"] | tuple[Dof, ...] = ()
+    angle: Angle = 0.0
     springs: SpringsSection | LineSpringsSection | None = None
 
 
@@ -188,8 +189,9 @@ class MassSection(Section):
 class SymmetrySection(Section):
     """A vertical plane at which the model ends."""
 
-    axis: Literal["x", "y"]
-    at: Length
+    axis: Literal["x", "y"] | None = None
+    at: Length | None = None
+    along: Annotated[tuple[GridPlace, ...], Field(min_length=2, max_length=2)] | None = None
 
 
 class RefineSection(Section):

@@ -1,8 +1,10 @@
 """Small buildings that tests share."""
 
+from dataclasses import replace
+
 import numpy as np
 
-from trundle.structure import CONCRETE, ShellSection, reference_plan
+from trundle.structure import CONCRETE, MirrorPlane, ShellSection, reference_plan
 from trundle.structure.building import (
     Beam,
     Building,
@@ -11,7 +13,6 @@ from trundle.structure.building import (
     Slab,
     Storey,
     Support,
-    SymmetryPlane,
 )
 
 
@@ -105,8 +106,30 @@ def reference():
         beams=tuple(beams),
         columns=tuple(columns),
         symmetry=(
-            SymmetryPlane(axis=0, position=x0),
-            SymmetryPlane(axis=0, position=x1),
-            SymmetryPlane(axis=1, position=y0),
+            MirrorPlane.across(0, x0),
+            MirrorPlane.across(0, x1),
+            MirrorPlane.across(1, y0),
         ),
     )
+
+
+def turned(building, angle):
+    """A building turned in plan about the origin."""
+    c, s = np.cos(angle), np.sin(angle)
+    turn = np.array([[c, s], [-s, c]])
+    keys = ("outline", "along", "at")
+
+    def one(part):
+        changes = {k: getattr(part, k) @ turn for k in keys if hasattr(part, k)}
+        if hasattr(part, "openings"):
+            changes["openings"] = tuple(o @ turn for o in part.openings)
+        if hasattr(part, "angle"):
+            changes["angle"] = part.angle + np.degrees(angle)
+        return replace(part, **changes)
+
+    mirrors = tuple(
+        MirrorPlane(normal=p.normal @ turn, position=p.position) for p in building.symmetry
+    )
+    kinds = ("slabs", "beams", "columns", "walls", "supports")
+    changes = {k: tuple(map(one, getattr(building, k))) for k in kinds}
+    return replace(building, symmetry=mirrors, **changes)

@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from buildings import LEVELS, box, column, line, plate, reference, slab, strip, table
+from buildings import LEVELS, box, column, line, plate, reference, slab, strip, table, turned
 
 from trundle.dynamics import factorise
 from trundle.errors import InputError
 from trundle.route import contact_rows
-from trundle.structure import CONCRETE, BeamSection, Hermite, reference_unit
+from trundle.structure import CONCRETE, BeamSection, Hermite, MirrorPlane, reference_unit
 from trundle.structure.building import (
     Beam,
     Brace,
@@ -20,7 +20,6 @@ from trundle.structure.building import (
     Ramp,
     Storey,
     Support,
-    SymmetryPlane,
     Wall,
     build_building,
     mesh_building,
@@ -74,24 +73,6 @@ def test_triangles_carry_the_reference_unit_as_quadrilaterals_do():
     settled = fine - (coarse - fine) * 0.6**2 / (1.0 - 0.6**2)
     triangles = first(reference(), 1.0, n=12, f_max=6.0, only_triangles=True)
     np.testing.assert_allclose(triangles, settled, rtol=0.01)
-
-
-def turned(building, angle):
-    """A building turned in plan about the origin."""
-    c, s = np.cos(angle), np.sin(angle)
-    turn = np.array([[c, s], [-s, c]])
-    keys = ("outline", "along", "at")
-
-    def one(part):
-        changes = {k: getattr(part, k) @ turn for k in keys if hasattr(part, k)}
-        if hasattr(part, "openings"):
-            changes["openings"] = tuple(o @ turn for o in part.openings)
-        if hasattr(part, "angle"):
-            changes["angle"] = part.angle + np.degrees(angle)
-        return replace(part, **changes)
-
-    kinds = ("slabs", "beams", "columns", "walls", "supports")
-    return replace(building, **{k: tuple(map(one, getattr(building, k))) for k in kinds})
 
 
 def test_a_building_turned_in_plan_has_the_same_modes():
@@ -574,7 +555,7 @@ def test_half_a_table_at_a_plane_of_symmetry_has_half_the_mass_and_its_symmetric
     half = table(
         slabs=(slab(corners=box(0, 0, 4, 6)),),
         columns=tuple(column(x, y) for x in (1.0, 4.0) for y in (1.0, 5.0)),
-        symmetry=(SymmetryPlane(axis=0, position=4.0),),
+        symmetry=(MirrorPlane.across(0, 4.0),),
     )
     both = [built(house, 0.5) for house in (whole, half)]
     assert both[1].moving_mass() == pytest.approx(0.5 * both[0].moving_mass(), rel=2e-3)
@@ -654,7 +635,7 @@ def test_what_stands_in_a_plane_of_symmetry_belongs_to_the_model_by_half():
         )
 
     whole = house(8, (1.0, 4.0, 7.0))
-    half = house(4, (1.0, 4.0), symmetry=(SymmetryPlane(axis=0, position=4.0),))
+    half = house(4, (1.0, 4.0), symmetry=(MirrorPlane.across(0, 4.0),))
     both = [built(one, 0.5) for one in (whole, half)]
     for read in (_spring_sum, _point_masses):
         assert read(both[1]) == pytest.approx(0.5 * read(both[0]), rel=1e-9)

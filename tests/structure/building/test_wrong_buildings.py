@@ -7,7 +7,7 @@ import pytest
 from buildings import LEVELS, box, column, line, plate, slab, table
 
 from trundle.errors import InputError
-from trundle.structure import CONCRETE, OrthotropicSection
+from trundle.structure import CONCRETE, MirrorPlane, OrthotropicSection
 from trundle.structure.building import (
     Beam,
     Brace,
@@ -18,7 +18,6 @@ from trundle.structure.building import (
     Ramp,
     Storey,
     Support,
-    SymmetryPlane,
     Wall,
     build_building,
     building_problems,
@@ -136,7 +135,7 @@ WRONG = {
         table(walls=(wall((0, 0), (0, 6), section=RIBBED),)), "wall[1].plate", "solid plate",
     ),
     "a wall in a plane of symmetry": (
-        table(walls=(wall((0, 0), (0, 6)),), symmetry=(SymmetryPlane(axis=0, position=0.0),)),
+        table(walls=(wall((0, 0), (0, 6)),), symmetry=(MirrorPlane.across(0, 0.0),)),
         "wall[1].along", "by half",
     ),
     "a brace to nowhere": (
@@ -168,8 +167,15 @@ WRONG = {
         table(masses=(Mass(on="slab", along=line((30, 2)), mass=1.0),)),
         "mass[1].at", "nothing on 'slab' at (30, 2) m",
     ),
+    "planes of symmetry at an odd angle": (
+        table(
+            slabs=(slab(corners=line((0, 0), (8, 0), (8, 5.6))),), columns=(column(4, 2),),
+            symmetry=(MirrorPlane.across(1, 0.0), MirrorPlane.through(line((0, 0), (8, 5.6)))),
+        ),
+        "symmetry[2].along", "90, 60, 45",
+    ),
     "a plane of symmetry through a slab": (
-        table(symmetry=(SymmetryPlane(axis=0, position=4.0),)), "symmetry[1].at", "on one side",
+        table(symmetry=(MirrorPlane.across(0, 4.0),)), "symmetry[1].at", "on one side",
     ),
 }  # fmt: skip
 

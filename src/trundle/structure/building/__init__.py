@@ -2,7 +2,7 @@
 
 from trundle.structure.building.build import Meshing, build_building, mesh_building
 from trundle.structure.building.checks import building_problems
-from trundle.structure.building.held import Base, Mass, Springs, Support, SymmetryPlane
+from trundle.structure.building.held import Base, Mass, Springs, Support
 from trundle.structure.building.parts import Beam, Brace, Building, Column, Ramp, Slab, Storey, Wall
 from trundle.structure.building.profile import Profile
 
@@ -20,7 +20,6 @@ __all__ = [
     "Springs",
     "Storey",
     "Support",
-    "SymmetryPlane",
     "Wall",
     "build_building",
     "building_problems",

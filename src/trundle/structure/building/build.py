@@ -14,7 +14,7 @@ from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.building.checks import building_problems
-from trundle.structure.building.holding import fixed_dofs, heads, masses, mirrors, springs
+from trundle.structure.building.holding import heads, held_dofs, masses, springs
 from trundle.structure.building.members import (
     SlabThickness,
     laid_beams,
@@ -127,12 +127,14 @@ def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
     ]
     walls = list(laid_walls(building, mesh, nodes, mesh_size))
     xyz, number = nodes.merged()
-    members = list(chain.from_iterable(one.groups(xyz, number, building.symmetry) for one in laid))
+    members = list(chain.from_iterable(one.groups(xyz, number, building.mirrors) for one in laid))
     quads, triangles = _faces(building, mesh)
     wall_groups = [ShellGroup(elements=number[e], section=w.section, name=w.name) for w, e in walls]
+    fixed, angles = held_dofs(building, mesh, nodes, xyz)
     return Floor(
         nodes=xyz,
-        fixed=fixed_dofs(building, mesh, nodes, xyz),
+        fixed=fixed,
+        angles=angles,
         shells=(*quads.values(), *wall_groups),
         beams=tuple(one for one in members if isinstance(one, BeamGroup)),
         springs=tuple(springs(building, mesh, nodes)),
@@ -140,7 +142,7 @@ def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
         others=(*triangles.values(), *(o for o in members if not isinstance(o, BeamGroup))),
         links=links,
         decks=tuple(_decks(building, xyz, {**quads}, triangles, members)),
-        mirrors=mirrors(building),
+        mirrors=building.mirrors,
         name=building.name,
     )
 

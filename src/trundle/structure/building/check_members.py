@@ -120,10 +120,10 @@ def _walls(building: Building) -> Iterator[Problem]:
                 remedy='set base = "fixed" or "pinned", or move it onto something',
             )
         for plane in building.symmetry:
-            if (np.abs(wall.along[:, plane.axis] - plane.position) < SNAP).all():
+            if (np.abs(plane.away(wall.along)) < SNAP).all():
                 yield Problem(
                     place=f"wall[{i}].along",
-                    value=f"in the plane {'xy'[plane.axis]} = {plane.position:g} m",
+                    value=f"in the plane {plane}",
                     rule="a wall in a plane of symmetry would belong to the model by half",
                     remedy="model the building beyond the plane, or leave the wall out",
                 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import chain, pairwise
+from itertools import chain, combinations, pairwise
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from trundle.structure.mesh.planar import SNAP
 __all__ = ["building_problems"]
 
 _CLOSE = 0.2  # m between storeys
+_SQUARE = 1e-6  # of angles between planes of symmetry
 
 
 def building_problems(building: Building) -> list[Problem]:
@@ -101,11 +102,27 @@ def _symmetry(building: Building) -> Iterator[Problem]:
         return
     places = np.concatenate(rows)
     for i, plane in enumerate(building.symmetry, start=1):
-        away = places[:, plane.axis] - plane.position
+        away = plane.away(places)
         if away.min() < -SNAP and away.max() > SNAP:
             yield Problem(
                 place=f"symmetry[{i}].at",
-                value=f"{'xy'[plane.axis]} = {plane.position:g} m",
+                value=str(plane),
                 rule="a plane of symmetry ends the model: all parts lie on one side of it",
                 remedy="remove the parts beyond it: they are the mirror images of those before",
             )
+    yield from _wedges(building)
+
+
+def _wedges(building: Building) -> Iterator[Problem]:
+    """Give planes that meet at an angle whose mirror images do not close round their corner."""
+    numbered = enumerate(building.mirrors, start=1)
+    for (i, one), (j, other) in combinations(numbered, 2):
+        angle = one.angle_to(other)
+        if angle < _SQUARE or abs(np.pi / angle - np.round(np.pi / angle)) < _SQUARE:
+            continue
+        yield Problem(
+            place=f"symmetry[{j}].along",
+            value=f"{other}, at {np.degrees(angle):.4g} degrees to plane {i}",
+            rule="planes of symmetry meet at 90, 60, 45, ... degrees: mirror images close so alone",
+            remedy="turn one of them, or model the building beyond it",
+        )

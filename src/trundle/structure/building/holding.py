@@ -9,7 +9,8 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from trundle._typing import Array
-from trundle.structure.building.held import Base, SymmetryPlane, share_inside
+from trundle.structure.building.held import ON_PLANE, Base, share_inside
+from trundle.structure.building.holds import Holds
 from trundle.structure.building.nodes import Nodes
 from trundle.structure.building.parts import Building
 from trundle.structure.building.sheets import passes
@@ -20,35 +21,28 @@ from trundle.structure.mesh.polygons import covers
 from trundle.structure.mesh.sheet_mesh import SheetMesh
 from trundle.structure.model import MirrorPlane
 
-__all__ = ["fixed_dofs", "heads", "masses", "mirrors", "springs"]
+__all__ = ["heads", "held_dofs", "masses", "springs"]
 
-_ON_PLANE = 1e-3  # m
 _PINNED = np.array([True, True, True, False, False, False])
+_ACROSS_X = np.array([True, False, False, False, True, True])
 
 
-def fixed_dofs(
+def held_dofs(
     building: Building, mesh: SheetMesh, nodes: Nodes, xyz: Float[Array, "nodes 3"]
-) -> Bool[Array, "nodes 6"]:
-    """Return which dofs are held."""
-    fixed = np.zeros((len(xyz), 6), dtype=bool)
+) -> tuple[Bool[Array, "nodes 6"], Float[Array, "nodes 2"] | None]:
+    """Return which dofs are held, and how far the axes are turned along which they are."""
+    holds = Holds(len(xyz))
     for base, some, _ in _feet(building, mesh, nodes):
-        if base == "fixed":
-            fixed[some] = True
-        elif base == "pinned":
-            fixed[some] |= _PINNED
+        if isinstance(base, str):
+            holds.add(some, np.ones(6, dtype=bool) if base == "fixed" else _PINNED)
     for support in building.supports:
-        fixed[_pieces(building, mesh, support.on, support.along)[0]] |= np.array(support.held)
-    for plane in building.symmetry:
-        on = np.abs(xyz[:, plane.axis] - plane.position) < _ON_PLANE
-        fixed[on] |= _mirrored(plane.axis)
-    return fixed
-
-
-def _mirrored(axis: int) -> Array:
-    """Return what a plane of symmetry holds: motion across it, and rotation out of it."""
-    held = np.zeros(6, dtype=bool)
-    held[[axis, 3 + (1 - axis), 5]] = True
-    return held
+        some, _ = _pieces(building, mesh, support.on, support.along)
+        holds.add(some, np.array(support.held), np.radians(support.angle))
+    for plane in building.mirrors:
+        on = np.flatnonzero(np.abs(plane.away(xyz)) < ON_PLANE)
+        # no motion across it, and no rotation out of it
+        holds.add(on, _ACROSS_X, float(np.arctan2(plane.normal[1], plane.normal[0])))
+    return holds.found()
 
 
 def _feet(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[tuple[Base, Array, Array]]:
@@ -61,15 +55,15 @@ def _feet(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[tuple[B
         for base, storey in ends:
             if base is not None:
                 node = nodes.at(storey, column.at, f"column {column.name!r}")
-                yield base, np.array([node]), share_inside(column.at[None, None], building.symmetry)
+                yield base, np.array([node]), share_inside(column.at[None, None], building.mirrors)
     number = {name: i for i, name in enumerate(building.floors)}
     for wall in building.walls:
         if wall.base is not None:
             some = mesh.along(number[wall.bottom], wall.along)
-            yield wall.base, some, _tributary(mesh.nodes[some], building.symmetry)
+            yield wall.base, some, _tributary(mesh.nodes[some], building.mirrors)
 
 
-def _tributary(places: Array, planes: Sequence[SymmetryPlane]) -> Array:
+def _tributary(places: Array, planes: Sequence[MirrorPlane]) -> Array:
     """Return the length of a line that belongs to each of its nodes [m]."""
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
     steps *= share_inside(np.stack([places[:-1], places[1:]], axis=1), planes)
@@ -82,9 +76,9 @@ def _pieces(building: Building, mesh: SheetMesh, on: str, along: Array) -> tuple
     if len(along) == 1:
         found = mesh.at(sheet, along[0])
         some = np.array([] if found is None else [found], dtype=np.intp)
-        return some, share_inside(mesh.nodes[some][:, None], building.symmetry)
+        return some, share_inside(mesh.nodes[some][:, None], building.mirrors)
     rows = [mesh.along(sheet, np.stack(pair)) for pair in pairwise(along)]
-    lengths = [_tributary(mesh.nodes[row], building.symmetry) for row in rows]
+    lengths = [_tributary(mesh.nodes[row], building.mirrors) for row in rows]
     some, place = np.unique(np.concatenate(rows), return_inverse=True)
     return some, np.bincount(place, weights=np.concatenate(lengths))
 
@@ -154,8 +148,3 @@ def _as_blocks(leads: Array, behind: Array) -> tuple[RigidLinks, ...]:
     axis[block[one]] = one  # any of the axes leads
     follow = np.flatnonzero(axis[block] != np.arange(len(nodes)))
     return (RigidLinks(leads=nodes[axis[block[follow]]], follows=nodes[follow]),)
-
-
-def mirrors(building: Building) -> tuple[MirrorPlane, ...]:
-    """Return the planes of symmetry."""
-    return tuple(MirrorPlane(axis=p.axis, position=p.position) for p in building.symmetry)

@@ -10,13 +10,14 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from trundle._typing import Array
-from trundle.structure.building.held import SymmetryPlane, share_inside
+from trundle.structure.building.held import share_inside
 from trundle.structure.building.nodes import Nodes
 from trundle.structure.building.parts import Beam, Building, Wall
 from trundle.structure.building.profile import Profile
 from trundle.structure.building.sheets import passes
 from trundle.structure.elements import BeamGroup, ReleasedBeams
 from trundle.structure.mesh.sheet_mesh import SheetMesh
+from trundle.structure.model import MirrorPlane
 
 __all__ = ["Laid", "laid_beams", "laid_braces", "laid_columns", "laid_walls"]
 
@@ -56,7 +57,7 @@ class Laid:
         self,
         nodes: Float[Array, "nodes 3"],
         number: Int[Array, " made"],
-        planes: Sequence[SymmetryPlane],
+        planes: Sequence[MirrorPlane],
     ) -> Iterator[BeamGroup | ReleasedBeams]:
         """Give groups of elements; what lies in planes of symmetry belongs to the model by half.
 

@@ -13,8 +13,9 @@ from jaxtyping import Float
 
 from trundle._checks import finite, frozen_array, one_of, set_frozen
 from trundle._typing import Array
-from trundle.structure.building.held import Base, Mass, Support, SymmetryPlane
+from trundle.structure.building.held import Base, Mass, Support
 from trundle.structure.building.profile import Profile
+from trundle.structure.model import MirrorPlane
 from trundle.structure.sections import PlateSection
 
 __all__ = [
@@ -293,10 +294,18 @@ class Building:
     ramps: tuple[Ramp, ...] = ()
     supports: tuple[Support, ...] = ()
     masses: tuple[Mass, ...] = ()
-    symmetry: tuple[SymmetryPlane, ...] = ()
+    symmetry: tuple[MirrorPlane, ...] = ()
     grid: dict[str, Float[Array, "2 2"]] = field(default_factory=dict[str, Array])
     north: float | None = None
     name: str = "building"
+
+    @property
+    def mirrors(self) -> tuple[MirrorPlane, ...]:
+        """Where it ends by symmetry: planes with normals that point to it."""
+        rows = [slab.outline for slab in (*self.slabs, *self.ramps)]
+        rows += [part.along for part in (*self.beams, *self.walls)]
+        places = np.concatenate([*rows, *(column.at[None] for column in self.columns)])
+        return tuple(plane.facing(places) for plane in self.symmetry)
 
     @property
     def floors(self) -> tuple[str, ...]:

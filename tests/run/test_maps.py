@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from studies import LONG, MAP
+from studies import BUILDING, LONG, MAP
+from trundle.criteria import ClassMap, Criterion
 from trundle.errors import StudyError
 from trundle.results.map_datasets import map_groups
 from trundle.results.maps import MapKey
 from trundle.run.whole_study import run_study
 from trundle.simulate import ensemble
-from trundle.study_file.build import load_study
+from trundle.study_file.build import load_study, study_from_text
 from trundle.units import KMH
 from trundle.views.map import map_views
 
@@ -143,3 +144,86 @@ def test_traffic_is_mapped_when_asked_for(tmp_path):
 def test_maps_that_cannot_be_are_refused(tmp_path, text, told):
     with pytest.raises(StudyError, match=told):
         study_of(tmp_path, text)
+
+
+LEVEL = """
+[criteria]
+method = "coupled"
+curves = ["VC-A", "electron-microscope-horizontal"]
+
+[map]
+on = ["lab", "deck"]
+axes = ["z", "x"]
+spacing = "4 m"
+runs = 2
+peaks = true
+"""
+
+
+@pytest.fixture(scope="module")
+def swaying():
+    """A building with a map of vertical motion and of that along x, and a point on one place."""
+    text = BUILDING + LEVEL
+    x, y = study_from_text(text).map.grids[0].xy[3]
+    point = f'axes = ["z", "x"]\nat = ["{x} m", "{y} m"]'
+    return run_study(study_from_text(text.replace('at = ["4 m", "3 m"]', point)))
+
+
+def test_a_map_along_x_is_what_points_read_along_x(swaying):
+    """The four maps are of two storeys and two axes; places of each are those of the other."""
+    plan = swaying.study.map
+    assert [(g.on, g.axis) for g in plan.grids] == [
+        ("lab", "z"), ("lab", "x"), ("deck", "z"), ("deck", "x"),
+    ]  # fmt: skip
+    assert plan.motion == "vertical, along x"
+    ((cell,), (mapped,)) = swaying.cells.values(), swaying.maps.values()
+    for (grid, part), column in zip(list(plan.parts())[:2], (0, 1), strict=True):
+        here = mapped.part(part)
+        rms = np.percentile(cell.rms_velocity[:, column], 95.0)
+        assert here.numbers["rms_velocity"][3] == pytest.approx(rms, rel=1e-3)
+        assert plan.where(part.start + 3)[2] == grid.label
+    levels = [mapped.part(part).numbers["rms_velocity"] for _, part in plan.parts()]
+    assert np.abs(levels[1] / levels[0] - 1.0).min() > 0.2
+
+
+def test_curves_hold_for_the_motion_that_they_are_for(swaying):
+    """VC-A is for each axis; the microscope's limit along x is on no vertical map."""
+    (mapped,), plan = swaying.maps.values(), swaying.study.map
+    vc, microscope = (mapped.classes.index(c.name) for c in plan.criteria)
+    for grid, part in plan.parts():
+        here = mapped.part(part).classes
+        assert here.applies[vc].all()
+        assert np.isfinite(here.margin[vc]).all()
+        assert (here.applies[microscope] == (grid.axis == "x")).all()
+        assert (np.isfinite(here.margin[microscope]) == (grid.axis == "x")).all()
+
+
+def test_maps_along_x_have_titles_and_datasets_of_their_own(swaying):
+    name = swaying.study.cases[0].name
+    titles = [view.title for view in map_views(swaying)]
+    assert titles == [
+        f"{name}, class B, {where}" for where in ("lab", "lab, along x", "deck", "deck, along x")
+    ]
+    groups = map_groups(swaying)
+    assert {f"/maps/{name}/lab", f"/maps/{name}/lab/along x"} <= set(groups)
+    assert groups[f"/maps/{name}/deck/along x"].attrs["motion"] == "along x"
+
+
+def test_a_class_is_none_only_where_the_widest_curve_for_that_motion_fails():
+    """A wide curve for vertical motion says nothing of level motion: -1 there, by the other alone."""
+    wide, strict = (
+        Criterion(
+            name=name, title=name, quantity="band_rms_velocity", axis=axis, source="test",
+            frequencies=np.array([8.0, 80.0]), limits=np.array([limit, limit]),
+            averaging="none", confidence="test",
+        )
+        for name, axis, limit in (("wide", "vertical", 1e-3), ("strict", "each axis", 1e-4))
+    )  # fmt: skip
+    classes = ClassMap(
+        places=np.zeros((3, 2)), criteria=(wide, strict),
+        margin=np.array([[2.0, np.nan, np.nan], [0.5, 0.5, np.nan]]),
+        governing_band=np.full((2, 3), 8.0), share_exceeding=np.zeros((2, 3)),
+        applies=np.array([[True, False, True], [True, True, True]]),
+        complete=(True, True), percentile=95.0,
+    )  # fmt: skip
+    assert classes.classes().tolist() == [0, -1, -2]

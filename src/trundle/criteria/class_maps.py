@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Bool, Float, Int
 
 from trundle._checks import within
 from trundle._typing import Array
@@ -39,6 +39,8 @@ class ClassMap:
         Mid-band frequency where it is smallest [Hz]; NaN for peaks.
     share_exceeding : ndarray of float, shape (n_criteria, n_places)
         Share of runs above the limit in any band, 0 to 1; NaN where nothing moves.
+    applies : ndarray of bool, shape (n_criteria, n_places)
+        Whether each criterion is for the motion that is mapped at a place: level or vertical.
     complete : tuple of bool
         Whether everything that each criterion asks for was computed and excited, and the vehicles
         have left; else it cannot be passed.
@@ -51,6 +53,7 @@ class ClassMap:
     margin: Float[Array, "criteria places"]
     governing_band: Float[Array, "criteria places"]
     share_exceeding: Float[Array, "criteria places"]
+    applies: Bool[Array, "criteria places"]
     complete: tuple[bool, ...]
     percentile: float
 
@@ -61,10 +64,10 @@ class ClassMap:
         is met, -2 where none is known to be passed and the widest not known to be failed.
         """
         order = self.order()
-        found = np.full(self.margin.shape[1], -1)
-        if order:
-            widest = self.margin[order[0]]
-            found[~(widest < 1.0)] = -2
+        widest = np.full(self.margin.shape[1], np.nan)
+        for i in reversed(order):
+            widest = np.where(self.applies[i], self.margin[i], widest)
+        found = np.where(widest < 1.0, -1, -2)
         for i in order:
             if self.complete[i]:
                 found[self.margin[i] >= 1.0] = i
@@ -78,6 +81,7 @@ class ClassMap:
             margin=self.margin[:, places],
             governing_band=self.governing_band[:, places],
             share_exceeding=self.share_exceeding[:, places],
+            applies=self.applies[:, places],
         )
 
     def order(self) -> list[int]:
@@ -100,6 +104,7 @@ def class_map(
     percentile: float = 95.0,
     f_max: float,
     coverage: Coverage | None = None,
+    level: Bool[Array, " places"] | None = None,
 ) -> ClassMap:
     """Hold a map against criteria.
 
@@ -115,24 +120,32 @@ def class_map(
         Highest frequency that modes and step show as it is [Hz].
     coverage : Coverage, optional
         Which bands the road excites, and whether the vehicles have left; without it all do.
+    level : ndarray of bool, shape (n_places,), optional
+        Where level motion is mapped; vertical motion elsewhere, and everywhere unless given.
     """
     reach = coverage or Coverage()
     within("percentile", percentile, 0.0, 100.0)
-    some = tuple(c for c in criteria if c.quantity in _MAPPED and c.axis != "horizontal")
-    level = np.percentile(floor.band_levels, percentile, axis=0)
+    level = np.zeros(len(floor.places), dtype=bool) if level is None else level
+    for_motion = {"horizontal": level, "vertical": ~level, "each axis": np.ones_like(level)}
+    some = tuple(c for c in criteria if c.quantity in _MAPPED and for_motion[c.axis].any())
+    levels = np.percentile(floor.band_levels, percentile, axis=0)
     found = [
-        _by_band(floor, level, c, reach)
+        _by_band(floor, levels, c, reach)
         if c.quantity == "band_rms_velocity"
         else _by_peak(floor, c, percentile, min(f_max, reach.excited_to) if reach.left else 0.0)
         for c in some
     ]
     shape = (len(some), len(floor.places))
+    applies = np.reshape([for_motion[c.axis] for c in some], shape)
+    numbers = np.array([one[:3] for one in found], dtype=float).reshape(len(some), 3, len(level))
+    margin, band, share = np.where(applies[:, None], numbers, np.nan).transpose(1, 0, 2)
     return ClassMap(
         places=floor.places,
         criteria=some,
-        margin=np.reshape([one[0] for one in found], shape),
-        governing_band=np.reshape([one[1] for one in found], shape),
-        share_exceeding=np.reshape([one[2] for one in found], shape),
+        margin=margin,
+        governing_band=band,
+        share_exceeding=share,
+        applies=applies,
         complete=tuple(one[3] for one in found),
         percentile=percentile,
     )
@@ -153,6 +166,7 @@ def envelope_of(maps: Sequence[ClassMap]) -> ClassMap:
         margin=np.take_along_axis(margins, worst, axis=0)[0],
         governing_band=np.take_along_axis(bands, worst, axis=0)[0],
         share_exceeding=np.fmax.reduce([one.share_exceeding for one in maps]),
+        applies=first.applies,
         complete=tuple(all(flags) for flags in zip(*(one.complete for one in maps), strict=True)),
         percentile=first.percentile,
     )

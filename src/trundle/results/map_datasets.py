@@ -31,16 +31,18 @@ def map_groups(result: StudyResult) -> dict[str, xr.Dataset]:
 
     ``/maps/CASE`` at the study's speeds, ``/map_speeds/CASE`` at those that the map names, and
     ``/map_envelope``, the worst of all single vehicles' maps; where several surfaces are mapped,
-    each ends with the name of its surface.
+    each ends with the name of its surface, and maps of level motion with ``along x`` or ``y``.
     """
     plan = result.study.map
     if plan is None or not result.maps:
         return {}
     groups: dict[str, xr.Dataset] = {}
     for grid, part in plan.parts():
-        on = f"/{grid.on}" if len(plan.grids) > 1 else ""
+        parts = (grid.on, None if grid.axis == "z" else f"along {grid.axis}")
+        on = "".join(f"/{part}" for part in parts if part) if len(plan.grids) > 1 else ""
         of_grid = {key: one.part(part) for key, one in result.maps.items()}
         for path, dataset in _groups_of(result, plan, grid, of_grid).items():
+            dataset.attrs["motion"] = "vertical" if grid.axis == "z" else f"along {grid.axis}"
             if grid.on is not None:
                 dataset.attrs["surface"] = grid.on
             groups[path + on] = dataset

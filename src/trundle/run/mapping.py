@@ -54,6 +54,7 @@ def _of_road(found: FloorMap, plan: MapPlan, layout: Layout) -> StudyMap:
             percentile=plan.percentile,
             f_max=layout.f_max,
             coverage=layout.coverage,
+            level=plan.level,
         ),
         numbers={
             name: np.percentile(levels, plan.percentile, axis=0)

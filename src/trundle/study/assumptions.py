@@ -43,11 +43,13 @@ def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
 
 def _axis_words(study: Study) -> str:
     """Say which motions are computed, and of what."""
-    if study.point_ways is None:
+    mapped = study.map is not None and bool(study.map.level.any())
+    if study.point_ways is None and not mapped:
         return "only vertical motion is computed; curves for each axis hold for it alone"
     return (
         "level motion is that of vertical wheel loads alone: braking, steering and wind are not in "
-        "it; points whose names end with x or y read it, and curves for each axis hold for each"
+        "it; points whose names end with x or y read it, maps along x or y show it, and curves for "
+        "each axis hold for each"
     )
 
 

@@ -12,7 +12,7 @@ from jaxtyping import Bool, Float
 from trundle._typing import Array
 from trundle.criteria import Criterion
 from trundle.signals import Averaging
-from trundle.structure import Spots, Surface
+from trundle.structure import Axis, Spots, Surface
 
 __all__ = ["MapGrid", "MapPlan", "map_places"]
 
@@ -45,6 +45,7 @@ class MapGrid:
         y: Float[Array, " rows"],
         surface: Surface | None,
         on: str | None,
+        axis: Axis = "z",
     ) -> MapGrid:
         """Lay a grid over a surface; over a whole rectangle without one."""
         xy = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
@@ -53,12 +54,24 @@ class MapGrid:
             xy = surface.frame.from_plan(xy)
             there = surface.holds(xy)
         shape = (len(y), len(x))
-        return cls(x=x, y=y, there=there.reshape(shape), spots=Spots(xy=xy[there], on=on))
+        spots = Spots(xy=xy[there], on=on, axis=axis)
+        return cls(x=x, y=y, there=there.reshape(shape), spots=spots)
 
     @property
     def on(self) -> str | None:
         """Name of the surface; None for the only one."""
         return self.spots.on
+
+    @property
+    def axis(self) -> Axis:
+        """Which motion is mapped."""
+        return self.spots.axis
+
+    @property
+    def label(self) -> str:
+        """Surface and level axis in words; empty for vertical motion of the only surface."""
+        along = None if self.axis == "z" else f"along {self.axis}"
+        return ", ".join(part for part in (self.on, along) if part is not None)
 
     @property
     def xy(self) -> Float[Array, "places 2"]:
@@ -79,7 +92,7 @@ class MapPlan:
     Attributes
     ----------
     grids : tuple of MapGrid
-        Places, surface by surface.
+        Places, surface by surface, axis by axis.
     runs : int
         Runs of each map, the first of the study's.
     criteria : tuple of Criterion
@@ -113,13 +126,24 @@ class MapPlan:
 
     @property
     def places(self) -> tuple[Spots, ...]:
-        """Return the places on every surface."""
+        """The places on every surface, for every axis."""
         return tuple(grid.spots for grid in self.grids)
 
     @property
     def n_places(self) -> int:
-        """Number of places on all surfaces."""
+        """Number of places on all surfaces, for all axes."""
         return sum(map(len, self.places))
+
+    @property
+    def level(self) -> Bool[Array, " places"]:
+        """Where level motion is mapped, of all places."""
+        return np.concatenate([np.full(len(s), s.axis != "z") for s in self.places])
+
+    @property
+    def motion(self) -> str:
+        """Which motion is mapped, in words."""
+        axes = dict.fromkeys(grid.axis for grid in self.grids)
+        return ", ".join("vertical" if axis == "z" else f"along {axis}" for axis in axes)
 
     def parts(self) -> Iterator[tuple[MapGrid, slice]]:
         """Give each grid with where its places stand among all."""
@@ -127,12 +151,12 @@ class MapPlan:
         for grid, (start, end) in zip(self.grids, pairwise(ends.tolist()), strict=True):
             yield grid, slice(start, end)
 
-    def where(self, place: int) -> tuple[float, float, str | None]:
-        """Return where one of all places is in plan [m], and on which surface."""
+    def where(self, place: int) -> tuple[float, float, str]:
+        """Return where one of all places is in plan [m], and its surface and axis in words."""
         for grid, part in self.parts():
             if place < part.stop:
                 x, y = grid.xy[place - part.start]
-                return float(x), float(y), grid.on
+                return float(x), float(y), grid.label
         raise IndexError(place)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -19,7 +19,17 @@ from trundle.study.plans import Assessment, Drive, MethodPlan
 from trundle.study_file.document import StudyFile
 from trundle.vehicle import Vehicle
 
-__all__ = ["Draft", "covered", "is_off", "refer", "surface_at", "undrawn", "unique", "unknown"]
+__all__ = [
+    "Draft",
+    "covered",
+    "is_off",
+    "no_sway",
+    "refer",
+    "surface_at",
+    "undrawn",
+    "unique",
+    "unknown",
+]
 
 _EDGE = 1e-6  # m
 
@@ -216,3 +226,14 @@ def covered(extent: Extent) -> str:
     """Say where the floor is."""
     (x0, x1), (y0, y1) = extent
     return f"the floor covers x {x0:g} to {x1:g} m and y {y0:g} to {y1:g} m"
+
+
+def no_sway(place: str, axes: Sequence[str]) -> Problem:
+    """Return the mistake of asking for level motion of what does not sway."""
+    return Problem(
+        place=place,
+        value=", ".join(axes),
+        rule="a storey whose columns end fixed does not sway as its building does: a [floor] "
+        "is vertical only",
+        remedy='model the [building], or leave axes = ["z"]',
+    )

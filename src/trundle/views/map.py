@@ -65,7 +65,7 @@ def map_views(result: StudyResult) -> list[MapView]:
 
 def _views_on(result: StudyResult, plan: MapPlan, grid: MapGrid, part: slice) -> list[MapView]:
     maps = {key: one.part(part) for key, one in result.maps.items()}
-    on = f", {grid.on}" if len(plan.grids) > 1 else ""
+    on = f", {_label(grid)}" if len(plan.grids) > 1 else ""
     drives = result.study.drives
     driven = {
         case.name: tuple(name for name in case.routes if name in drives)
@@ -94,6 +94,11 @@ def _views_on(result: StudyResult, plan: MapPlan, grid: MapGrid, part: slice) ->
         words = f"worst of all single routes{on}"
         views.append(_worst(result, list(single.values()), words, grid))
     return views
+
+
+def _label(grid: MapGrid) -> str:
+    """Say which of several maps of a study it is: its surface, and its axis."""
+    return grid.label or "vertical"
 
 
 def _worst(result: StudyResult, maps: list[StudyMap], title: str, grid: MapGrid) -> MapView:
@@ -152,7 +157,11 @@ def _view(result: StudyResult, view: MapView) -> dict[str, Any]:
         "x": _short(view.grid.x),
         "y": _short(view.grid.y),
         "routes": _on(result, view.routes, view.grid.on),
-        "points": [name for name, spot in study.points.items() if spot.on == view.grid.on],
+        "points": [
+            name
+            for name, spot in study.points.items()
+            if (spot.on, spot.axis) == (view.grid.on, view.grid.axis)
+        ],
         "ranks": [
             [None if np.isnan(r) else int(r) for r in row] for row in view.grid.filled(ranks)
         ],

@@ -78,8 +78,8 @@ def _worst_place(result: StudyResult, key: CellKey, verdict: Verdict | None) -> 
     worst = int(np.nanargmin(margin))
     plan = result.study.map
     assert plan is not None  # there are maps
-    x, y, on = plan.where(worst)
-    return f"{margin[worst]:.3g} at ({x:.1f}, {y:.1f}) m" + ("" if on is None else f" on {on}")
+    x, y, label = plan.where(worst)
+    return f"{margin[worst]:.3g} at ({x:.1f}, {y:.1f}) m" + (f" ({label})" if label else "")
 
 
 def _where(result: StudyResult, key: CellKey, verdict: Verdict | None) -> str:

@@ -91,7 +91,7 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
         ],
         loc="outside lower center",
         ncols=min(len(shown), 6),
-        title="strictest criterion met, vertical",
+        title=f"strictest criterion met, {plan.motion}",
     )
     return figure
 
@@ -214,7 +214,7 @@ def _image(panel: Axes, study: Study, view: MapView, values: Array, **look: obje
         panel.plot(*line, color="white", linewidth=2.4)
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
     for spot in study.points.values():
-        if spot.on != view.grid.on:
+        if (spot.on, spot.axis) != (view.grid.on, view.grid.axis):
             continue
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")

@@ -13,11 +13,11 @@ from pydantic import Field
 from trundle._words import in_kmh
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
-from trundle.structure import FloorPlan, Surface, mesh_lines
+from trundle.structure import Axis, FloorPlan, Surface, mesh_lines
 from trundle.study.map_plan import MapGrid, MapPlan, map_places
 from trundle.study.model import Extent
 from trundle.study.plans import Assessment, Drive, MethodPlan
-from trundle.study_file.draft import Draft, surface_at
+from trundle.study_file.draft import Draft, no_sway, surface_at
 from trundle.study_file.fields import (
     Flag,
     Name,
@@ -42,6 +42,7 @@ class MapSection(Section):
     """What is mapped over the whole floor, by the method that carries the verdict."""
 
     on: Name | tuple[Name, ...] | None = None
+    axes: Annotated[tuple[Axis, ...], Field(min_length=1)] = ("z",)
     places: Literal["grid", "nodes"] = "grid"
     spacing: PositiveLength | None = None
     runs: Annotated[Whole, Field(ge=1, le=_MANY)] | None = None
@@ -87,6 +88,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         n_roads=max(1, len(file.items("road"))),
         known=() if draft.model is None else tuple(draft.model.surfaces),
         surfaces=surfaces,
+        sways=draft.building is not None,
     )
     found = list(_problems(checked))
     return (draft if found else replace(draft, map=_plan(checked))), found
@@ -128,12 +130,19 @@ class _Checked:
     n_roads: int
     known: tuple[str, ...]
     surfaces: tuple[Surface, ...]
+    sways: bool
 
     @property
     def curves(self) -> list[str]:
         """Names of the criteria that a map can be held against."""
         some = (c for c in self.assessment.criteria if c.quantity in _MAPPED)
-        return [c.name for c in some if c.axis != "horizontal"]
+        mapped = {"each axis", *("vertical" if a == "z" else "horizontal" for a in self.axes)}
+        return [c.name for c in some if c.axis in mapped]
+
+    @property
+    def axes(self) -> tuple[Axis, ...]:
+        """Motions that are mapped, each once."""
+        return tuple(dict.fromkeys(self.section.axes))
 
     @cached_property
     def grids(self) -> tuple[MapGrid, ...]:
@@ -152,13 +161,16 @@ class _Checked:
             low, high = (surface.frame.to_plan(corner[None])[0] for corner in surface.extent)
             x, y = (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
             lines = map_places(x, spacing, y), map_places(y, spacing, x)
-            grids.append(MapGrid.over(*lines, surface, surface.name if several else None))
+            on = surface.name if several else None
+            grids += [MapGrid.over(*lines, surface, on, axis) for axis in self.axes]
         return tuple(grids)
 
 
 def _problems(given: _Checked) -> Iterator[Problem]:
     """Give the mistakes of a map: what it is held against, how it is averaged, how fine it is."""
     yield from _criterion(given)
+    if set(given.axes) != {"z"} and not given.sways:
+        yield no_sway("map.axes", given.axes)
     if given.assessment.averaging not in {"max_1s", "event"}:
         yield Problem(
             place="map",
@@ -233,7 +245,7 @@ def _sizes(given: _Checked) -> Iterator[Problem]:
     section = given.section
     spacing = given.mesh_size if section.places == "nodes" else section.spacing or 1e9
     places = float(np.prod([np.ceil((b - a) / spacing) for a, b in given.extent]))
-    places *= max(1, len(given.surfaces))
+    places *= max(1, len(given.surfaces)) * len(given.axes)
     if places > _MOST_PLACES:
         yield Problem(
             place="map.places" if section.places == "nodes" else "map.spacing",

@@ -14,7 +14,7 @@ from trundle.errors import InputError, Problem
 from trundle.signals import Isolation, Isolator, TransmissibilityTable
 from trundle.structure import Axis, Spot, Surface
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, covered, is_off, surface_at, undrawn, unique
+from trundle.study_file.draft import Draft, covered, is_off, no_sway, surface_at, undrawn, unique
 from trundle.study_file.fields import (
     Factor,
     Frequency,
@@ -130,13 +130,7 @@ def _level(draft: Draft, place: str, section: PointSection) -> Iterator[Problem]
     if set(section.axes) == {"z"}:
         return
     if draft.building is None and "building" not in draft.file.given:
-        yield Problem(
-            place=place,
-            value=", ".join(section.axes),
-            rule="a storey whose columns end fixed does not sway as its building does: a [floor] "
-            "is vertical only",
-            remedy='model the [building], or read axes = ["z"]',
-        )
+        yield no_sway(place, section.axes)
     elif section.isolator is not None:
         yield Problem(
             place=place,

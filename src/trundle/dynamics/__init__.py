@@ -1,6 +1,6 @@
 """Reduce vibrating things to matrices and step them through time."""
 
-from trundle.dynamics.damping import Damping, ModalRatio, Rayleigh
+from trundle.dynamics.damping import ByMaterial, Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
 from trundle.dynamics.exact import ExactRecursion, ModalRecursion
 from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
@@ -22,6 +22,7 @@ from trundle.dynamics.system import LinearSystem, block_diagonal
 __all__ = [
     "REACH",
     "TOP",
+    "ByMaterial",
     "Damping",
     "ExactRecursion",
     "Factor",

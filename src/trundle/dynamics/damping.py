@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
@@ -9,10 +10,11 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._checks import non_negative, positive, set_frozen, within
-from trundle._typing import Array, Matrix
+from trundle._typing import Array, Matrix, SparseMatrix
+from trundle.dynamics.eigen import Modes
 from trundle.errors import FitnessWarning, InputError
 
-__all__ = ["Damping", "ModalRatio", "Rayleigh"]
+__all__ = ["ByMaterial", "Damping", "ModalRatio", "Rayleigh"]
 
 _HEAVY = 0.10  # damping ratio above which Rayleigh damping suppresses what it should show
 _LOOKED_AT = (10.0, 20.0, 40.0, 80.0)  # Hz
@@ -24,6 +26,16 @@ class Damping(Protocol):
 
     def ratios(self, omega: Float[Array, " modes"]) -> Float[Array, " modes"]:
         """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
+        ...
+
+    def in_modes(
+        self, modes: Modes, damped: Callable[[float], SparseMatrix]
+    ) -> Float[Array, " modes"]:
+        """Return the damping ratio of each mode.
+
+        `damped` gives the stiffness, every part's times its damping ratio, that of parts without
+        one times what it is called with.
+        """
         ...
 
     @property
@@ -83,6 +95,13 @@ class Rayleigh:
         """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
         return self.alpha / (2.0 * omega) + self.beta * omega / 2.0
 
+    def in_modes(
+        self, modes: Modes, damped: Callable[[float], SparseMatrix]
+    ) -> Float[Array, " modes"]:
+        """Return the damping ratio of each mode, whatever it is made of."""
+        del damped
+        return self.ratios(modes.omega)
+
     @property
     def rayleigh(self) -> Rayleigh:
         """Itself."""
@@ -130,6 +149,13 @@ class ModalRatio:
         """Return the damping ratio of each mode at circular frequency omega [rad/s]."""
         return np.full_like(omega, self.ratio)
 
+    def in_modes(
+        self, modes: Modes, damped: Callable[[float], SparseMatrix]
+    ) -> Float[Array, " modes"]:
+        """Return the damping ratio of each mode, whatever it is made of."""
+        del damped
+        return self.ratios(modes.omega)
+
     @property
     def rayleigh(self) -> Rayleigh | None:
         """None: it would fill the whole matrix; without damping both coefficients are 0."""
@@ -142,3 +168,50 @@ class ModalRatio:
     def __str__(self) -> str:
         """Describe the model for a report."""
         return f"{100 * self.ratio:g} % of critical in every mode"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ByMaterial:
+    """Damp every mode as the materials that it strains.
+
+    The ratio of a mode is the mean of those of its parts, each weighted by the energy that it
+    stores: ``sum(zeta_g phi.T K_g phi) / phi.T K phi`` (composite modal damping; Eurocode 8-2,
+    annex D).
+
+    Attributes
+    ----------
+    other : float
+        Ratio of critical damping of parts whose material has none, such as springs.
+    """
+
+    other: float
+
+    def __post_init__(self) -> None:
+        """Check the ratio."""
+        set_frozen(self, other=within("damping ratio", self.other, 0.0, 0.9999))
+
+    def ratios(self, omega: Float[Array, " modes"]) -> Float[Array, " modes"]:
+        """Return the ratio of parts whose material has none: of modes alone no more is known."""
+        return np.full_like(omega, self.other)
+
+    def in_modes(
+        self, modes: Modes, damped: Callable[[float], SparseMatrix]
+    ) -> Float[Array, " modes"]:
+        """Return the damping ratio of each mode, by the energy in its parts."""
+        return modes.energies(damped(self.other)) / modes.omega**2
+
+    @property
+    def rayleigh(self) -> Rayleigh | None:
+        """None: modes differ as their parts do."""
+        return None
+
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """Say nothing: every part has what was asked for."""
+        return ()
+
+    def __str__(self) -> str:
+        """Describe the model for a report."""
+        return (
+            "damping of modes by the energy in each material, "
+            f"{100 * self.other:g} % of critical where none is given"
+        )

@@ -27,6 +27,9 @@ _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any f
 _RIGID = 1e-4  # rad2/s2: an eigenvalue below this is a motion without strain
 
 
+_AT_ONCE = 64  # modes whose energies are formed together
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Modes:
     """Hold the natural modes of an undamped system, scaled to unit modal mass.
@@ -65,6 +68,14 @@ class Modes:
     def at(self, dofs: Int[Array, " dofs"]) -> Float[Array, "dofs modes"]:
         """Return the shapes at some dofs."""
         return self.shapes[dofs]
+
+    def energies(self, matrix: SparseMatrix) -> Float[Array, " modes"]:
+        """Return ``phi.T @ K @ phi`` of each mode: twice its energy in a stiffness [1/s2]."""
+        out = np.empty(self.n_modes)
+        for start in range(0, self.n_modes, _AT_ONCE):
+            some = self.shapes[:, start : start + _AT_ONCE]
+            out[start : start + _AT_ONCE] = np.einsum("ij,ij->j", some, matrix @ some)
+        return out
 
     def forces(self, load: Float[Array, " dofs"]) -> Float[Array, " modes"]:
         """Return the modal forces of a load."""

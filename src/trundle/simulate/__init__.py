@@ -1,6 +1,6 @@
 """Drive vehicles over floors: decoupled or coupled, one at a time or together."""
 
-from trundle.dynamics import Damping, ModalRatio, Rayleigh
+from trundle.dynamics import ByMaterial, Damping, ModalRatio, Rayleigh
 from trundle.simulate.coverage import Coverage, coverage_of
 from trundle.simulate.direct.method import Newmark
 from trundle.simulate.ensembles import (
@@ -28,6 +28,7 @@ from trundle.simulate.spectral.places import PlaceResponses, lay_out_places
 from trundle.simulate.truncation import TruncationChange, truncation_change
 
 __all__ = [
+    "ByMaterial",
     "Coupled",
     "Coverage",
     "Crossing",

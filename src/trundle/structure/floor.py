@@ -18,7 +18,7 @@ from trundle.dynamics import Factor, Modes, factorise, natural_modes
 from trundle.errors import InputError
 from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.point_mass import PointMasses
-from trundle.structure.elements.protocol import GROUND, Elements
+from trundle.structure.elements.protocol import GROUND, Damped, Elements
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.spring import SpringGroup
 from trundle.structure.links import RigidLinks, expansion_of, follows, own_motion
@@ -163,6 +163,21 @@ class Floor:
     def mass(self) -> SparseMatrix:
         """Consistent mass matrix of the free dofs [kg]."""
         return self._assemble(lambda group, xyz: group.mass_blocks(xyz))
+
+    def damped_stiffness(self, other: float) -> SparseMatrix:
+        """Return the stiffness, every element's times its damping ratio [N/m].
+
+        `other` is the ratio of elements whose material has none.
+        """
+
+        def blocks(group: Elements, xyz: Array) -> Array | None:
+            """Return the stiffness of each element times its ratio."""
+            known = group.damping_ratio if isinstance(group, Damped) else None
+            stiffness = group.stiffness_blocks(xyz)
+            ratio = other if known is None else known
+            return None if stiffness is None else ratio * stiffness
+
+        return self._assemble(blocks)
 
     @property
     def content_hash(self) -> str:

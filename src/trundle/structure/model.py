@@ -148,6 +148,10 @@ class Structure(Protocol):
         """Return what solves for static deflections; None where only modes are known."""
         ...
 
+    def damped_stiffness(self, other: float) -> SparseMatrix:
+        """Return the stiffness, every element's times its damping ratio, or the other [N/m]."""
+        ...
+
     def matrices(self) -> tuple[SparseMatrix, SparseMatrix]:
         """Return mass [kg] and stiffness [N/m]; refused by one that is known by its modes alone."""
         ...

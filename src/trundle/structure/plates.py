@@ -33,6 +33,8 @@ class OrthotropicSection:
         Plate and what lies on it [kg/m2].
     rotary_inertia : float
         Moment of inertia of the mass about the mid-plane [kg].
+    damping_ratio : float or None
+        Ratio of critical damping of what it is made of; None where it says nothing.
     axis : ndarray of float, shape (3,)
         Direction of x in space; its part in the plane counts.
     thickness : float
@@ -44,6 +46,7 @@ class OrthotropicSection:
     shear: tuple[float, float]
     mass_per_area: float
     rotary_inertia: float = 0.0
+    damping_ratio: float | None = None
     axis: Float[Array, " 3"] = field(default_factory=lambda: np.array([1.0, 0.0, 0.0]))
     thickness: float = 0.2
 

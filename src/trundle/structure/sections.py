@@ -28,14 +28,20 @@ class Material:
         Poisson's ratio nu, at least 0 and below 0.5.
     density : float
         Mass density [kg/m3].
+    damping_ratio : float or None
+        Ratio of critical damping of what is made of it, see `ByMaterial`; None where it says
+        nothing.
     """
 
     elastic_modulus: float
     poisson_ratio: float
     density: float
+    damping_ratio: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the three numbers."""
+        """Check the numbers."""
+        if self.damping_ratio is not None:
+            within("damping_ratio", self.damping_ratio, 0.0, 0.9999)
         set_frozen(
             self,
             elastic_modulus=positive("elastic_modulus", self.elastic_modulus),
@@ -78,6 +84,11 @@ class PlateLaws:
 @runtime_checkable
 class PlateSection(Protocol):
     """What a shell element asks of its section."""
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """Ratio of critical damping of what it is made of; None where it says nothing."""
+        ...
 
     @property
     def thickness(self) -> float:
@@ -129,6 +140,11 @@ class ShellSection:
             thickness=positive("slab thickness", self.thickness),
             superimposed_mass=non_negative("superimposed_mass", self.superimposed_mass),
         )
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """Ratio of critical damping of its material, if known."""
+        return self.material.damping_ratio
 
     @property
     def mass_per_area(self) -> float:

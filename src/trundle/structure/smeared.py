@@ -69,6 +69,7 @@ def _plate(
         membrane=(stretch[0], stretch[1], nu * wide * plate, shear * plate),
         shear=(_SHEAR * shear * x.area, _SHEAR * shear * y.area),
         mass_per_area=mass,
+        damping_ratio=material.damping_ratio,
         rotary_inertia=rotary,
         thickness=depth,
     )
@@ -237,6 +238,7 @@ def hollow_core_slab(
         membrane=(wide * area, wide * solid, nu * wide * solid, shear * solid),
         shear=(_SHEAR * shear * area, _SHEAR * shear * solid),
         mass_per_area=mass,
+        damping_ratio=material.damping_ratio,
         rotary_inertia=material.density * area * depth**2 / 12.0,
         thickness=depth,
     )

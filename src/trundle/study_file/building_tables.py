@@ -22,6 +22,7 @@ from trundle.study_file.fields import (
     Place,
     PositiveLength,
     Pressure,
+    Ratio,
     RotationalStiffness,
     Section,
     Stiffness,
@@ -51,6 +52,7 @@ class MaterialSection(Section):
     elastic_modulus: Pressure
     poisson_ratio: Annotated[Number, Field(ge=0.0, lt=0.5)] = 0.2
     density: Density
+    damping_ratio: Ratio | None = None
 
 
 class StoreySection(Section):

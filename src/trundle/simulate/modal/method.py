@@ -11,7 +11,7 @@ from jaxtyping import Int
 from trundle._checks import positive, set_frozen
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import TOP, Damping, ModalRecursion, Modes
+from trundle.dynamics import TOP, ByMaterial, Damping, ModalRecursion, Modes
 from trundle.errors import FitnessWarning, InputError
 from trundle.signals import TOP_FREQUENCY
 from trundle.simulate.ground import ModalReach
@@ -120,11 +120,12 @@ class Modal:
         if modes is None or modes.f_max < self.f_max:
             modes = floor.modes(self.f_max, progress=progress)
         modes = self._below(modes)
+        ratios = damping.in_modes(modes, floor.damped_stiffness)
         return FloorInModes(
             floor=floor,
             integration=self,
             damping=damping,
-            propagator=ModalRecursion(modes.omega, damping.ratios(modes.omega), self.dt),
+            propagator=ModalRecursion(modes.omega, ratios, self.dt),
             modes=modes,
             flexibility=flexibility or StaticFlexibility(floor),
         )
@@ -189,7 +190,19 @@ class FloorInModes:
                     f"{self.modes.f_max:g} Hz does not even answer statically",
                 ),
             )
+        if isinstance(self.damping, ByMaterial):
+            found += (self._damping_found(),)
         return found
+
+    def _damping_found(self) -> FitnessWarning:
+        """Say what materials make of the damping of modes."""
+        ratios = 100.0 * self.propagator.double / (2.0 * np.sqrt(self.propagator.square))
+        low, high = ratios.min(), ratios.max()
+        return FitnessWarning(
+            subject="damping",
+            message=f"by the energy that modes store in each material they have {low:.2g} to "
+            f"{high:.2g} % of critical, the first {ratios[0]:.2g} %",
+        )
 
     @cached_property
     def n_stepped(self) -> int:

@@ -6,7 +6,7 @@ goes to a floor by ``Floor(others=(group, ...))``. One that wheels can stand on 
 
 from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.point_mass import PointMasses
-from trundle.structure.elements.protocol import GROUND, Elements, Standable
+from trundle.structure.elements.protocol import GROUND, Damped, Elements, Standable
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.released_beam import ReleasedBeams
 from trundle.structure.elements.spring import SpringGroup
@@ -17,6 +17,7 @@ __all__ = [
     "GROUND",
     "BeamGroup",
     "ContactShape",
+    "Damped",
     "Elements",
     "Hat",
     "Hermite",

@@ -254,6 +254,11 @@ class BeamGroup:
         return False
 
     @property
+    def damping_ratio(self) -> float | None:
+        """Ratio of critical damping of what they are made of, if known."""
+        return self.section.material.damping_ratio
+
+    @property
     def carried(self) -> Bool[Array, " 6"]:
         """All six: stretch, bending, shear and torsion."""
         return np.ones(6, dtype=bool)

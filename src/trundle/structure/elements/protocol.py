@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from trundle._typing import Array
 from trundle.structure.elements.standing import ContactShape, Located, Weights
 
-__all__ = ["GROUND", "Elements", "Standable"]
+__all__ = ["GROUND", "Damped", "Elements", "Standable"]
 
 GROUND = -1
 """Node number that stands for rigid ground."""
@@ -52,6 +52,16 @@ class Elements(Protocol):
         self, xyz: Float[Array, "elements nodes 3"]
     ) -> Float[Array, "elements dofs dofs"] | None:
         """Return the consistent mass of each element [kg], or None; `xyz` are its nodes [m]."""
+        ...
+
+
+@runtime_checkable
+class Damped(Protocol):
+    """Elements that know how they are damped."""
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """Ratio of critical damping of what they are made of; None where it says nothing."""
         ...
 
 

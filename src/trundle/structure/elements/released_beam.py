@@ -72,6 +72,11 @@ class ReleasedBeams:
         return False
 
     @property
+    def damping_ratio(self) -> float | None:
+        """Ratio of critical damping of what they are made of, if known."""
+        return self.beams.damping_ratio
+
+    @property
     def carried(self) -> Bool[Array, " 6"]:
         """The translations, and the rotations that one end at least transmits."""
         kept = ~self.released.all(axis=0)

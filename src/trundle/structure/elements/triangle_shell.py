@@ -308,6 +308,11 @@ class TriangleGroup:
         return False
 
     @property
+    def damping_ratio(self) -> float | None:
+        """Ratio of critical damping of what they are made of, if known."""
+        return self.section.damping_ratio
+
+    @property
     def carried(self) -> Bool[Array, " 6"]:
         """All six: membrane, bending and drilling."""
         return np.ones(6, dtype=bool)

@@ -6,18 +6,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, Literal
 
-from trundle.dynamics import Damping, ModalRatio, Rayleigh
+from trundle.dynamics import ByMaterial, Damping, ModalRatio, Rayleigh
 from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.route import entry_named
 from trundle.simulate import Coupled, Decoupled, Integration, Modal, Newmark
 from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import Hat, Hermite
+from trundle.structure.elements import Damped
 from trundle.study.plans import Drive, MethodPlan
 from trundle.study_file.attempt import attempt
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import Draft, unique
 from trundle.study_file.fields import (
+    Flag,
     Frequency,
     GroupName,
     NonNegativeLength,
@@ -34,8 +36,9 @@ __all__ = ["METHOD", "build", "fields", "problems"]
 
 
 class DampingSection(Section):
-    """Damping of the floor: a ratio in every mode, or Rayleigh's two coefficients."""
+    """Damping of the floor: a ratio in every mode, by material, or Rayleigh's two coefficients."""
 
+    by_material: Flag = False
     ratio: Ratio | None = None
     rayleigh_alpha: Rate | None = None
     rayleigh_beta: Time | None = None
@@ -78,6 +81,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
     yield from _entries(draft.drives, draft.methods)
     yield from _vehicle_steps(draft.drives, draft.methods)
     yield from unique("method", [s.name for s in draft.file.items("method")])
+    yield from _without_damping(draft)
 
 
 def methods_of(
@@ -144,6 +148,8 @@ def _damping(section: MethodSection, place: str) -> Damping | Problem:
     d = section.damping
     alpha, beta = d.rayleigh_alpha, d.rayleigh_beta
     if d.ratio is not None and alpha is None and beta is None:
+        if d.by_material:
+            return ByMaterial(other=d.ratio)
         return ModalRatio(ratio=d.ratio)
     if d.ratio is None and alpha is not None and beta is not None:
         return Rayleigh(alpha=alpha, beta=beta)
@@ -151,10 +157,29 @@ def _damping(section: MethodSection, place: str) -> Damping | Problem:
     return Problem(
         place=f"{place}.damping",
         value=", ".join(n for n in names if getattr(d, n) is not None) or "nothing",
-        rule="damping is either a ratio or both Rayleigh coefficients",
-        remedy='write { ratio = "3 %" } or { rayleigh_alpha = "0.8587 1/s", '
-        'rayleigh_beta = "0.001 s" }',
+        rule="damping is a ratio, also of what has none by its material, or both Rayleigh "
+        "coefficients",
+        remedy='write { ratio = "3 %" }, { by_material = true, ratio = "3 %" } or '
+        '{ rayleigh_alpha = "0.8587 1/s", rayleigh_beta = "0.001 s" }',
     )
+
+
+def _without_damping(draft: Draft) -> Iterator[Problem]:
+    """Give damping by material of a floor whose materials have none."""
+    if draft.model is None and "building" in draft.file.given:
+        return  # its own mistakes are told
+    groups = () if draft.model is None else draft.model.elements
+    if any(isinstance(g, Damped) and g.damping_ratio is not None for g in groups):
+        return
+    for i, section in draft.file.lists.get("method", []):
+        if section.damping.by_material:
+            yield Problem(
+                place=f"method[{i + 1}].damping.by_material",
+                value="true",
+                rule="no material has a damping_ratio; those of a [building] can",
+                remedy='add one, such as [building.materials.concrete] damping_ratio = "2 %", or '
+                'write { ratio = "3 %" }',
+            )
 
 
 def _integration(section: MethodSection, place: str) -> Integration | Problem:

@@ -49,9 +49,7 @@ def test_square_plates(record, edge, held, wanted, kind):
     floor = shell(scattered(1.0), t, 200e9, 0.3, edges(held), kind)
     f = natural_modes(floor.mass, floor.stiffness, f_max=1.2 * wanted[-1] * scale).frequencies
     for i, value in enumerate(wanted):
-        record.row(
-            f"scattered plate, {edge}, {kind}, mode {i + 1}", value, f[i] / scale, rtol=0.01
-        )
+        record.row(f"scattered plate, {edge}, {kind}, mode {i + 1}", value, f[i] / scale, rtol=0.01)
 
 
 @pytest.mark.parametrize("kind", KINDS)

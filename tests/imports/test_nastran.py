@@ -61,7 +61,14 @@ def written(floor, form):
             for i, row in enumerate(rows)
         )
 
-    lines = ["SOL 103", "CEND", "SPC = 1", "BEGIN BULK", "$ a comment"]
+    lines = [
+        "SOL 103",
+        "CEND",
+        "SPC = 1",
+        "BEGIN BULK",
+        "$ a comment",
+        card("PARAM", "COUPMASS", 1),
+    ]
     for i, (place, held) in enumerate(zip(floor.nodes, floor.fixed, strict=True)):
         lines.append(card("GRID", i + 1, None, *(float(v) for v in place)))
         if held.any():
@@ -140,15 +147,22 @@ def test_i1_bends_in_the_plane_of_the_orientation(tmp_path, up, direction, inert
     assert sinking == pytest.approx(1e3 * 27.0 / (3.0 * 2.1e11 * inertia), rel=1e-9, abs=0.0)
 
 
-def test_masses_with_wtmass(tmp_path):
-    """Half of the bar's own and of what a metre has besides, and the point mass, by WTMASS."""
+@pytest.mark.parametrize(
+    ("coupmass", "share"), [("", 2.0), ("PARAM,COUPMASS,1\n", 3.0), ("PARAM,COUPMASS,-1\n", 2.0)]
+)
+def test_masses_with_wtmass(tmp_path, coupmass, share):
+    """The bar's own and what a metre has besides, and the point mass, by WTMASS.
+
+    Half of a bar is lumped at its end; of a consistent one a third moves with a linear motion.
+    """
     path = tmp_path / "bar.bdf"
-    path.write_text(CANTILEVER.replace("UP", "0.,0.,1.") + "PARAM,WTMASS,2.\n")
+    path.write_text(CANTILEVER.replace("UP", "0.,0.,1.") + coupmass + "PARAM,WTMASS,2.\n")
     bar = read_model(path).structure
-    rigid = bar.rigid_vector(0)  # along the bar: consistent mass of a linear motion
+    rigid = bar.rigid_vector(0)
     assert float(rigid @ (bar.mass @ rigid)) == pytest.approx(
-        2.0 * ((7850.0 * 0.01 + 10.0) * 3.0 / 3.0 + 50.0), rel=1e-9
+        2.0 * ((7850.0 * 0.01 + 10.0) * 3.0 / share + 50.0), rel=1e-9
     )
+    assert bool(bar.mass[bar.dof_index[1, 4], bar.dof_index[1, 4]]) is (share == 3.0)
 
 
 def test_a_grid_in_a_turned_system(tmp_path):
@@ -165,15 +179,25 @@ def test_a_grid_in_a_turned_system(tmp_path):
 @pytest.mark.parametrize(
     ("card", "said"),
     [
-        ("RBE2,5,1,123456,2", "bar.bdf, line 11: got RBE2"),
-        ("CELAS2,5,1.+6,1,3", "CELAS2"),
+        ("RBE3,5,,1,123456,1.,123,2", "bar.bdf, line 11: got RBE3"),
+        ("RBE2,5,1,123,2", "grids follow in all of 123456"),
+        ("CELAS2,5,1.+6,1,3,2,2", "to the same of another"),
+        ("CELAS2,5,1.+6", "a spring needs a grid"),
+        ("CBUSH,5,1,1", "a bush without CID"),
+        ("CBUSH,5,1,1,2,0.,1.,0.", "lies along the basic axes"),
+        ("PBUSH,5,K,RIGID", "RIGID is not read"),
+        ("PBEAM,5,1,.01,2.-5,8.-6,0.,1.-5,,+\n+,NO,1.,.02", "a beam that tapers"),
+        ("PBEAM,5,1,.01,2.-5,8.-6,1.-6,1.-5", "I12 is not 0"),
+        ("PBEAM,5,1,.01,2.-5,8.-6,,1.-5,,+\n+\n+,,,.1", "shear relief"),
+        ("PBARL,5,1,,HAT,,,,,+\n+,.1,.1,.1,.1", "shapes read are BAR"),
+        ("PBARL,5,1,,I,,,,,+\n+,.3,.1,.2,.01,.01,.01", "an I whose flanges differ"),
+        ("CBAR,3,1,1,2,0.,0.,1.,GOO,+\n+,,,.1,,,.1", "offsets are read in the basic system"),
+        ("PCOMP,5,,,,,,,,+\n+,1,.1,0.,YES", "PCOMP"),
         ("PARAM,MAGIC,1", "PARAM MAGIC is not known"),
-        ("CBAR,3,1,1,2,0.,0.,1.,,+\n+,5", r"CBAR 3: this section: pins|pins \(PA, PB\)"),
         ("CONM2,8,2,,5.,1.", "masses beside their grid"),
         ("PSHELL,4,1,.2,2", "only solid plates"),
         ("MAT1,2,2.1+11,1.+10,.3", "contradict each other"),
         ("GRID,3,,1.,X,0.", "must be a number"),
-        ("GRID,3,,1.,0.,0.,5", "displacements in a system of their own"),
         ("SPC,1,1,1,.5", "enforced"),
         ("GRID,2,,5.,0.,0.", "grid 2 is there twice"),
         ("CBAR,1,1,2,1,0.,0.,1.", "element 1 is there twice"),
@@ -198,7 +222,12 @@ def test_what_is_not_understood_is_told_with_its_line(tmp_path, card, said):
     ("old", "new", "said"),
     [
         ("CBAR,1,1,1,2,UP", "CBAR,1,1,1,9,0.,0.,1.", "names grid 9"),
-        ("CBAR,1,1,1,2,UP", "CBAR,1,2,1,2,0.,0.,1.", "property 2, which is no PBAR"),
+        ("CBAR,1,1,1,2,UP", "CBAR,1,2,1,2,0.,0.,1.", "property 2, which is not there"),
+        ("CBAR,1,1,1,2,UP", "CBAR,1,1,1,2,0.,0.,1.,,+\n+,2", "pins in 2 are not read"),
+        (",,123456", ",7,12346", "a system of its own (CD)"),
+        ("CONM2,9", "CELAS1,8,4,2,3\nCONM2,9", "property 4, which is no spring's"),
+        ("CONM2,9", "RBE2,8,2,123456,1\nRBE2,7,1,123456,2\nCONM2,9", "in a ring"),
+        ("CBAR,1,1,1,2,UP", "CBAR,1,1,2,2,0.,0.,1.", "both ends are at one place"),
         ("CBAR,1,1,1,2,UP", "CBAR,1,1,1,2,1.,0.,0.", "orientation lies along the bar"),
         ("MAT1,1,", "MAT1,3,", "material 1, which is not there"),
         ("GRID,2,7,", "GRID,2,8,", "coordinate system 8"),

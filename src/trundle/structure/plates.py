@@ -62,7 +62,7 @@ class OrthotropicSection:
         set_frozen(
             self,
             shear=tuple(positive("shear stiffness", value) for value in self.shear),
-            mass_per_area=positive("mass_per_area", self.mass_per_area),
+            mass_per_area=non_negative("mass_per_area", self.mass_per_area),
             rotary_inertia=non_negative("rotary_inertia", self.rotary_inertia),
             axis=frozen_array("axis", self.axis, shape=(3,)),
             thickness=positive("thickness", self.thickness),

@@ -1,0 +1,310 @@
+"""Make a floor of what the cards of Nastran bulk data say."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trundle._typing import Array
+from trundle.errors import InputError
+from trundle.imports.nastran_deck import Deck, Member, MemberMake
+from trundle.imports.nastran_places import Places
+from trundle.structure import (
+    BeamGroup,
+    BeamSection,
+    Floor,
+    Material,
+    OrthotropicSection,
+    PointMasses,
+    RigidLinks,
+    ShellGroup,
+    ShellSection,
+    SpringGroup,
+    TriangleGroup,
+)
+from trundle.structure.elements import GROUND, Elements, LumpedMasses, ReleasedBeams
+
+__all__ = ["floor_of"]
+
+_STIFF = 1e4  # times its shear stiffness, of a plate that does not shear
+_SAME = 1e-6  # m, within which the grids of a bush are at one place
+
+
+def floor_of(deck: Deck, asked: int | None, name: str) -> Floor:
+    """Return the floor of a deck; `asked` is the set of supports that case control names.
+
+    Raises
+    ------
+    InputError
+        Numbers that name nothing, or what cannot be made of the cards.
+    """
+    return _Builder(deck, asked, name).floor()
+
+
+class _Builder:
+    """Makes a floor of what the cards say."""
+
+    def __init__(self, deck: Deck, asked: int | None, name: str) -> None:
+        self._deck, self._asked, self._name = deck, asked, name
+        self._row = {number: row for row, number in enumerate(deck.grids)}
+        places = Places(deck.grids, deck.every_grid, deck.systems)
+        self._nodes = np.array([places.of(number) for number in deck.grids]).reshape(-1, 3)
+        self._lumps = np.zeros(len(self._nodes))
+
+    def floor(self) -> Floor:
+        """Return it."""
+        shells, triangles = self._faces()
+        bars = list(self._bars())
+        lumps = () if self._deck.consistent else tuple(self._lumped())
+        return Floor(
+            nodes=self._nodes,
+            fixed=self._fixed(),
+            shells=tuple(shells),
+            beams=tuple(bar for bar in bars if isinstance(bar, BeamGroup)),
+            springs=tuple(self._springs()),
+            masses=tuple(self._masses()),
+            others=(*triangles, *(b for b in bars if not isinstance(b, BeamGroup)), *lumps),
+            links=self._links(),
+            name=self._name,
+        )
+
+    def _node(self, number: int, where: str) -> int:
+        if number not in self._row:
+            raise InputError(f"{where} names grid {number}, which is not there")
+        return self._row[number]
+
+    def _material(self, number: int, where: str) -> Material:
+        if number not in self._deck.materials:
+            raise InputError(f"{where} names material {number}, which is not there")
+        material = self._deck.materials[number]
+        return replace(material, density=material.density * self._deck.weight_to_mass)
+
+    def _lump(self, elements: Array, masses: Array) -> None:
+        """Put the mass of each element on its nodes, alike on all."""
+        share = np.repeat(masses / elements.shape[1], elements.shape[1])
+        np.add.at(self._lumps, elements.ravel(), share)
+
+    def _lumped(self) -> Iterator[LumpedMasses]:
+        heavy = np.flatnonzero(self._lumps)
+        if len(heavy):
+            yield LumpedMasses(nodes=heavy, mass=self._lumps[heavy])
+
+    def _faces(self) -> tuple[list[ShellGroup], list[Elements]]:
+        found: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
+        for number, corners, place in self._deck.faces:
+            if number not in self._deck.shells:
+                raise InputError(f"{place} names property {number}, which is no PSHELL")
+            found[number, len(corners)].append([self._node(n, place) for n in corners])
+        shells, triangles = list[ShellGroup](), list[Elements]()
+        for (number, corners), elements in found.items():
+            numbers = np.array(elements)
+            section, name = self._plate(number, numbers), f"PSHELL {number}"
+            if corners == 4:
+                shells.append(ShellGroup(elements=numbers, section=section, name=name))
+            else:
+                triangles.append(TriangleGroup(connectivity=numbers, section=section, name=name))
+        return shells, triangles
+
+    def _plate(self, number: int, elements: Array) -> ShellSection | OrthotropicSection:
+        """Return a plate's section; without mass where that is on its nodes."""
+        plate = self._deck.shells[number]
+        section = ShellSection(
+            thickness=plate.thickness,
+            material=self._material(plate.material, f"PSHELL {number}"),
+            superimposed_mass=plate.more * self._deck.weight_to_mass,
+        )
+        if not self._deck.consistent:
+            self._lump(elements, section.mass_per_area * _areas(self._nodes[elements]))
+            light = replace(section.material, density=0.0)
+            section = replace(section, material=light, superimposed_mass=0.0)
+        return section if plate.shears else _without_shear(section)
+
+    def _bars(self) -> Iterator[BeamGroup | ReleasedBeams]:
+        found: dict[tuple, list[tuple[int, int]]] = defaultdict(list)
+        for bar in self._deck.bars:
+            ends = self._node(bar.ends[0], bar.place), self._node(bar.ends[1], bar.place)
+            make = self._make(bar)
+            up = self._up(bar, ends)
+            found[bar.property, up, bar.offset, _released(bar, make)].append(ends)
+        for (number, up, offset, released), elements in found.items():
+            numbers = np.array(elements)
+            group = BeamGroup(
+                elements=numbers,
+                section=self._bar_section(number, numbers),
+                up=np.array(up),
+                offset=np.array(offset),
+                name=f"property {number}" if number > 0 else f"CONROD {-number}",
+            )
+            pins = np.array(released)
+            yield ReleasedBeams(beams=group, released=pins) if pins.any() else group
+
+    def _make(self, bar: Member) -> MemberMake:
+        if bar.property not in self._deck.members:
+            raise InputError(f"{bar.place} names property {bar.property}, which is not there")
+        return self._deck.members[bar.property]
+
+    def _up(self, bar: Member, ends: tuple[int, int]) -> tuple[float, ...]:
+        """Return the direction that lies in the plane of a bar's first bending."""
+        along = self._nodes[ends[1]] - self._nodes[ends[0]]
+        if not np.linalg.norm(along) > 0.0:
+            raise InputError(f"{bar.place}: both ends are at one place")
+        if bar.up is not None:
+            up = np.array(bar.up)
+        elif bar.towards is not None:
+            up = self._nodes[self._node(bar.towards, bar.place)] - self._nodes[ends[0]]
+        else:  # a rod has no sides: any direction across it
+            up = np.eye(3)[int(np.abs(along).argmin())]
+        if np.linalg.norm(np.cross(along, up)) < 1e-9 * np.linalg.norm(along):
+            raise InputError(f"{bar.place}: the orientation lies along the bar")
+        return tuple((up / np.linalg.norm(up)).tolist())
+
+    def _bar_section(self, number: int, elements: Array) -> BeamSection:
+        """Return a member's section; without mass where that is on its nodes."""
+        make = self._deck.members[number]
+        material = self._material(make.material, f"property {number}")
+        # mass that a metre has besides is spread over the section
+        density = material.density + make.more * self._deck.weight_to_mass / make.section.area
+        if not self._deck.consistent:
+            lengths = np.linalg.norm(np.diff(self._nodes[elements], axis=1)[:, 0], axis=1)
+            self._lump(elements, density * make.section.area * lengths)
+            density = 0.0
+        return replace(make.section, material=replace(material, density=density))
+
+    def _masses(self) -> Iterator[PointMasses]:
+        found: dict[float, list[int]] = defaultdict(list)
+        for number, mass in self._deck.masses:
+            found[mass * self._deck.weight_to_mass].append(self._node(number, "a CONM2"))
+        for mass, at in found.items():
+            yield PointMasses(nodes=np.array(at), mass=mass, name="CONM2")
+
+    def _springs(self) -> Iterator[SpringGroup]:
+        for spring in self._deck.springs:
+            known = spring.stiffness or self._deck.stiffnesses.get(spring.property)
+            if known is None:
+                raise InputError(
+                    f"{spring.place} names property {spring.property}, which is no spring's"
+                )
+            stiffness = np.zeros(6)
+            if spring.dof:
+                stiffness[spring.dof - 1] = known[0]
+            elif len(known) == 6:
+                stiffness[:] = known
+            else:
+                raise InputError(
+                    f"{spring.place} names property {spring.property}, which is no PBUSH"
+                )
+            ends = [GROUND if n is None else self._node(n, spring.place) for n in spring.ends]
+            self._check_spring(spring.dof, ends, spring.place)
+            yield SpringGroup(elements=np.array([ends]), stiffness=stiffness, name="spring")
+
+    def _check_spring(self, dof: int, ends: Sequence[int], place: str) -> None:
+        """Refuse springs along other axes than the basic ones, and bushes with arms."""
+        numbers = list(self._deck.grids)
+        some = [node for node in ends if node != GROUND]
+        if any(self._moves_in(numbers[node]) for node in some):
+            raise InputError(f"{place}: a spring at a grid whose displacements have a system (CD)")
+        if not dof and len(some) == 2 and np.ptp(self._nodes[some], axis=0).max() > _SAME:
+            raise InputError(f"{place}: a bush between grids that are apart is not read")
+
+    def _links(self) -> tuple[RigidLinks, ...]:
+        leads, behind = list[int](), list[int]()
+        for lead, some, place in self._deck.rigid:
+            behind += [self._node(number, place) for number in some]
+            leads += [self._node(lead, place)] * len(some)
+        root = dict(zip(behind, leads, strict=True))
+        if len(root) < len(behind):
+            raise InputError("a grid follows two others by RBE2")
+        leads = [_first_of(root, node) for node in behind]
+        if not behind:
+            return ()
+        return (RigidLinks(leads=np.array(leads), follows=np.array(behind)),)
+
+    def _moves_in(self, number: int) -> int:
+        own = self._deck.grids[number].moves_in
+        return own if own is not None else self._deck.every_grid.moves_in or 0
+
+    def _fixed(self) -> Array:
+        fixed = np.zeros((len(self._row), 6), dtype=bool)
+        for number, grid in self._deck.grids.items():
+            self._hold(fixed, number, grid.held or self._deck.every_grid.held)
+        sets = self._deck.supports
+        asked = self._asked
+        if asked is None and len(sets) > 1:
+            raise InputError(f"sets {sorted(sets)} of supports, and case control asks for none")
+        chosen = list(sets) if asked is None else self._deck.added.get(asked, [asked])
+        for number in chosen:
+            if number not in sets:
+                raise InputError(f"case control asks for SPC {number}, which is not there")
+            for grids, dofs in sets[number]:
+                # of a range those count that are there; a grid that is named must be
+                there = grids if len(grids) == 1 else [n for n in self._deck.grids if n in grids]
+                for grid in there:
+                    self._hold(fixed, grid, dofs)
+        return fixed
+
+    def _hold(self, fixed: Array, grid: int, dofs: str) -> None:
+        if not re.fullmatch(r"[1-6]*|0", dofs):
+            raise InputError(f"grid {grid} is held in {dofs!r}; dofs are numbered 1 to 6")
+        node = self._node(grid, "a support")
+        held = {int(dof) for dof in dofs.strip("0")}
+        if self._moves_in(grid) and any(
+            0 < len(held & some) < 3 for some in ({1, 2, 3}, {4, 5, 6})
+        ):
+            raise InputError(
+                f"grid {grid} is held in {dofs} of a system of its own (CD), which is not read"
+            )
+        fixed[node, [dof - 1 for dof in held]] = True
+
+
+def _without_shear(section: ShellSection) -> OrthotropicSection:
+    """Return a plate that does not shear, as one without MID3."""
+    laws = section.laws(np.eye(3)[None])
+    (d, d_xy), d_t = laws.bending[0, :2], laws.bending[2, 2]
+    (c, c_xy), c_t = laws.membrane[0, :2], laws.membrane[2, 2]
+    shear = _STIFF * float(laws.shear[0, 0])
+    return OrthotropicSection(
+        bending=(d, d, d_xy, d_t),
+        membrane=(c, c, c_xy, c_t),
+        shear=(shear, shear),
+        mass_per_area=section.mass_per_area,
+        rotary_inertia=section.rotary_inertia,
+        thickness=section.thickness,
+    )
+
+
+def _released(bar: Member, make: MemberMake) -> tuple[tuple[bool, ...], ...]:
+    """Return which rotations both ends of a member let go: about its axis, its y, its z.
+
+    Dofs of pins are along the member: 4 about its axis, 6 in plane 1, which holds the orientation
+    and bends about our y, 5 in plane 2.
+    """
+    if make.rod:
+        return ((not make.twists, True, True),) * 2
+    for pins in bar.pins:
+        if not re.fullmatch(r"[456]*|0?", pins):
+            raise InputError(f"{bar.place}: pins in {pins} are not read; rotations, 4 to 6, are")
+    return tuple(("4" in pins, "6" in pins, "5" in pins) for pins in bar.pins)
+
+
+def _first_of(root: dict[int, int], node: int) -> int:
+    """Return the grid that leads all that a grid follows."""
+    seen = {node}
+    while node in root:
+        node = root[node]
+        if node in seen:
+            raise InputError("grids follow each other in a ring by RBE2")
+        seen.add(node)
+    return node
+
+
+def _areas(corners: Array) -> Array:
+    """Return the areas of triangles, and of quadrilaterals by their diagonals [m2]."""
+    if corners.shape[1] == 3:
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    else:
+        across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    return 0.5 * np.linalg.norm(across, axis=1)

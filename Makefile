@@ -36,10 +36,10 @@ check: .venv/.ready-dev
 
 test: check
 	sh scripts/setup_browser.sh
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n 2 -m "not longest"
 
 fast: .venv/.ready-dev
-	$(BIN)/python -m pytest -n 2 -m "not slow"
+	$(BIN)/python -m pytest -n 2 -m "not slow and not longest"
 
 ifdef ONLY
 validate: .venv/.ready-dev
@@ -47,6 +47,7 @@ validate: .venv/.ready-dev
 else
 validate: .venv/.ready-dev
 	$(BIN)/python -m pytest -n 2 --record=build/validation.json tests/validation
+	$(BIN)/python -m pytest -n 2 -m longest tests/dynamics tests/run
 	$(BIN)/python scripts/mutate_inputs.py
 	$(BIN)/python scripts/combine_studies.py
 	$(BIN)/python scripts/kill_at_random.py

@@ -101,7 +101,7 @@ def whole(tmp_path_factory) -> dict[str, bytes]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [1, 5])
+@pytest.mark.parametrize("count", [1, pytest.param(5, marks=pytest.mark.longest)])
 def test_a_killed_run_ends_with_the_same_bytes(tmp_path, whole, count):
     """kill -9 in the middle: nothing half-written; the same command finishes what is missing."""
     folder = folder_of(tmp_path, "killed")

@@ -46,3 +46,24 @@ def test_beams_that_begin_2_cm_apart_leave_slivers_which_are_told(y, told):
     found = quality_of_mesh(study)
     assert found.least_angle < 5.0 or found.largest_aspect > 20.0
     assert np.isfinite(found.largest_angle)
+
+
+def test_ends_that_miss_a_part_by_millimetres_are_told():
+    """A beam of a storey without a slab that ends 5 mm short of another; 0.5 mm would be joined."""
+    storey = '[[building.storey]]\nname = "roof"\nlevel = "10 m"\n\n'
+    roof = "".join(
+        f'[[building.beam]]\non = "roof"\nsection = "steel"\nalong = {along}\n\n'
+        for along in ('[["0 m", "0 m"], ["0 m", "6 m"]]', '[["{x} m", "3 m"], ["8 m", "3 m"]]')
+    )
+    columns = (
+        '[[building.column]]\nsection = "post"\nat = [["0 m", "0 m"], ["0 m", "6 m"], ["8 m", "3 m"]]\n'
+        'from = "lab"\nto = "roof"\n\n'
+    )
+    text = BUILDING.replace("[[building.slab]]", storey + roof + columns + "[[building.slab]]", 1)
+    told = {}
+    for x in ("0.005", "0.0005", "0.2"):
+        doubts = study_doubts(tr.study_from_text(text.replace("{x}", x)))
+        told[x] = [d.message for d in doubts if d.subject == "gap"]
+    assert told["0.0005"] == told["0.2"] == []
+    assert len(told["0.005"]) == 1
+    assert "ends at (0.005, 3) m on 'roof', 5 mm from beam" in told["0.005"][0]

@@ -41,7 +41,7 @@ MISTAKES = [
     ("single precision with newmark", 'f_max = "30 Hz"', 'integration = "newmark"\nprecision = "single"', ["method[1].precision", "double precision"]),
     ("no event", 'curves = ["VC-A"]', 'curves = ["VC-A"]\nevents = 0', ["criteria.events"]),
     ("ratio with newmark", 'f_max = "30 Hz"', 'integration = "newmark"', ["method[1].damping", "rayleigh_alpha"]),
-    ("two dampings", 'ratio = "3 %"', 'ratio = "3 %", rayleigh_alpha = "1 1/s"', ["method[1].damping", "either a ratio or"]),
+    ("two dampings", 'ratio = "3 %"', 'ratio = "3 %", rayleigh_alpha = "1 1/s"', ["method[1].damping", "damping is a ratio"]),
     ("no damping", 'ratio = "3 %"', "", ["method[1].damping", "nothing"]),
     ("damping in per cent without sign", '"3 %"', "3.0", ["method[1].damping.ratio", "below 1"]),
     ("unknown interaction", '"coupled"\nf_max', '"copled"\nf_max', ["method[1].interaction", "did you mean 'coupled'"]),

@@ -229,6 +229,44 @@ MISTAKES = {
         ),
         "building.support[1].angle", "springs act along x, y and z",
     ),
+    "grid lines of one name": (
+        ('C = "16 m"', 'C = "16 m"\n1 = "3 m"'), "building.grid", "names of grid lines must differ",
+    ),
+    "springs along a line by the place": (
+        (
+            "[[building.column]]",
+            '[[building.support]]\non = "deck"\nalong = ["A/1", "C/1"]\n'
+            'springs = { uz = "1 MN/m" }\n\n[[building.column]]',
+        ),
+        "building.support[1].springs", "are by the metre",
+    ),
+    "a refinement of a storey that is not there": (
+        (
+            "[[building.column]]",
+            '[[building.refine]]\non = "dekc"\nat = ["A/1"]\nsize = "0.2 m"\n\n[[building.column]]',
+        ),
+        "building.refine[1].on", "name of a storey",
+    ),
+    "a refinement of nothing": (
+        ("[[building.column]]", '[[building.refine]]\nsize = "0.2 m"\n\n[[building.column]]'),
+        "building.refine[1]", "along a line, or at places",
+    ),
+    "a refinement that is coarser": (
+        (
+            "[[building.column]]",
+            '[[building.refine]]\nat = ["A/1"]\nsize = "2 m"\n\n[[building.column]]',
+        ),
+        "building.refine[1].size", "smaller than mesh_size",
+    ),
+    "a plane of symmetry of one place": (
+        (
+            "[[building.column]]",
+            '[[building.symmetry]]\nalong = ["A/1", "A/1"]\n\n[[building.column]]',
+        ),
+        "building.symmetry[1].along", "two places",
+    ),
+    "columns at a word": (('at = "grid"', 'at = "Grid"'), "building.column[1].at", "'grid'; or a list"),
+    "a base that is no kind": (('base = "fixed"', 'base = "fixd"'), "building.column[1].base", "or a table"),
     "too fine along routes": (
         ('mesh_size = "1.5 m"', 'mesh_size = "1.5 m"\nsize_at_routes = "1 cm"'),
         "building.mesh_size", "nodes where it is refined",
@@ -282,3 +320,30 @@ def test_a_study_needs_a_floor_or_a_building():
     text = BUILDING[BUILDING.index("[vehicle.car]") :].replace('on = "deck"\n', "").replace('on = "lab"\n', "")  # fmt: skip
     with pytest.raises(StudyError, match=r"\[floor\] or a \[building\]"):
         tr.study_from_text('title = "t"\nseed = 1\nruns = 2\n' + text)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('at = "grid"', 'at = "A/1"'),
+        ('at = "grid"', 'at = ["0 m", "0 m"]'),
+        ('base = "fixed"', 'base = { uz = "-1 MN/m" }'),
+        ('base = "fixed"', "base = 3"),
+        ('C = "16 m"', 'C = "16 m"\n"A/B" = "3 m"'),
+    ],
+)
+def test_alternatives_of_a_key_are_told_once_in_our_words(old, new):
+    """No names of the validating library, and one mistake for one slip."""
+    problems = refused((old, new))
+    for problem in problems:
+        assert not any(c in problem.place.split(".")[-1] for c in "(<"), str(problem)
+        for word in ("literal", "tuple", "function", "Section", "[key]"):
+            assert word not in str(problem)
+    places = [problem.place for problem in problems]
+    assert len(places) == len(set(places))
+
+
+def test_elements_are_small_where_grid_lines_cross():
+    fine = loaded(("[[building.column]]", '[[building.refine]]\non = "deck"\nat = ["A/1"]\nsize = "0.2 m"\n\n[[building.column]]')).floor  # fmt: skip
+    near = np.hypot(*(fine.nodes[:, :2]).T) < 0.6
+    assert np.count_nonzero(near & (fine.nodes[:, 2] == 3.0)) >= 6

@@ -145,6 +145,7 @@ def test_modes(record, residual):
     )  # fmt: skip
 
 
+@pytest.mark.longest
 def test_modal_tends_to_direct(record):
     """All that is left between the methods, as f_max rises, is Newmark's own time error."""
     floor = small_floor(mesh_size=2.0)

@@ -145,7 +145,7 @@ def modes_below(floor, f_max):
     return monolithic.Basis(omega=np.sqrt(square[kept]), shapes=shapes[:, kept])
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_reference_unit_at_the_default_step(record, unit, unit_basis):
     """The stepping alone: the same modes in both, nothing for the rest."""
     runs = unit.computed(Coupled(integration=Modal(f_max=90.0, dt=5e-3, residual=False)))

@@ -27,7 +27,7 @@ POINTS = {
 NOT_CARRIED = "2 m do not carry these waves; the check warns of bands above 4 Hz"
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_two_meshes(record):
     waves = class_b(0.05, 90 / SPEED, n_waves=120, seed=3, fade=2.0)
     vehicle, duration = container_truck_40ft(), 18.0

@@ -132,6 +132,7 @@ def test_frequencies_of_the_reference_unit(record):
     )
 
 
+@pytest.mark.longest
 def test_moving_force_on_the_reference_unit(record):
     """10 t at 40 km/h along the rear road, from before the floor to 1 s after it.
 

@@ -21,7 +21,7 @@ from trundle.structure import (
     resolving_mesh_size,
 )
 from trundle.structure.building import Building
-from trundle.study.doubts_mesh import shape_doubts
+from trundle.study.doubts_mesh import gap_doubts, shape_doubts
 from trundle.study.doubts_values import value_doubts
 from trundle.study.model import Study
 from trundle.study.plans import MethodPlan
@@ -109,6 +109,7 @@ def _of_building(study: Study, building: Building) -> Iterator[FitnessWarning]:
     reach = building_resolution(plates, study.mesh_size)
     if plates and len(bands) and bands[-1] > reach:
         yield _coarse(study, bands, reach, building_mesh_size(plates, float(bands[-1])))
+    yield from gap_doubts(building)
     yield from shape_doubts(study)
 
 

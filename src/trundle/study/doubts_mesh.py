@@ -10,12 +10,14 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
 from trundle.structure import Surface
+from trundle.structure.building import Building, gaps_of
 from trundle.structure.mesh import MeshQuality, angles, aspects, quality_of
 from trundle.study.model import Study
 
-__all__ = ["quality_of_mesh", "shape_doubts"]
+__all__ = ["gap_doubts", "quality_of_mesh", "shape_doubts"]
 
 _SHARP, _FLAT = np.radians([5.0, 175.0])
+_TOLD = 5  # gaps one by one
 _LONG = 20.0  # longest side over shortest
 
 
@@ -42,6 +44,22 @@ def shape_doubts(study: Study) -> Iterator[FitnessWarning]:
                 "they are stiffer than the slab. Lines run beside each other there: put them onto "
                 "each other, or further apart",
             )
+
+
+def gap_doubts(building: Building) -> Iterator[FitnessWarning]:
+    """Doubt ends that come near to a part of their storey and do not meet it."""
+    found = list(gaps_of(building))
+    for gap in found[:_TOLD]:
+        x, y = gap.place
+        yield FitnessWarning(
+            subject="gap",
+            message=f"{gap.part} ends at ({x:.6g}, {y:.6g}) m on {gap.storey!r}, "
+            f"{1e3 * gap.distance:.2g} mm from {gap.other}, and is not joined to it: ends within "
+            "1 mm are; move it there, or further away",
+        )
+    if len(found) > _TOLD:
+        more = f"{len(found) - _TOLD} more ends within 50 mm of a part that they do not meet"
+        yield FitnessWarning(subject="gap", message=more)
 
 
 def _shapes(surface: Surface) -> Iterator[Float[Array, "elements corners 2"]]:

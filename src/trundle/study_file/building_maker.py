@@ -39,6 +39,23 @@ class Maker:
         self._grid = grid_lines(section.grid)
         self.problems: list[Problem] = []
 
+    @property
+    def mesh_size(self) -> float:
+        """Largest element edge of the building [m]."""
+        return float(self._section.mesh_size)
+
+    def check_grid(self) -> None:
+        """Keep grid lines of one name, and lines between two places at one."""
+        grid = self._section.grid
+        names = [*grid.x, *grid.y, *grid.lines]
+        for name in dict.fromkeys(name for name in names if names.count(name) > 1):
+            rule = "names of grid lines must differ, for places are found by them"
+            self.refuse("building.grid", f"{name!r} {names.count(name)} times", rule, "rename one")
+        for name, (start, end) in grid.lines.items():
+            if start == end:
+                rule, remedy = "a grid line runs through two places", "give two that are apart"
+                self.refuse(f"building.grid.lines.{name}", "one place twice", rule, remedy)
+
     def profile(self, place: str, name: str) -> Profile:
         """Return a cross-section by its name; any for one with a mistake."""
         self._check(f"{place}.section", name, "sections")
@@ -83,6 +100,8 @@ class Maker:
             remedy = f"there are: {', '.join(self._grid) or 'none'}; see [building.grid]"
             self.refuse(place, given, f"there is no grid line {unknown[0]!r}", remedy)
             return np.zeros(2)
+        if any(np.array_equal(*self._grid[name]) for name in names):
+            return np.zeros(2)  # told with its grid
         found = _crossing(*(self._grid[name] for name in names))
         if found is None:
             rule = f"grid lines {names[0]!r} and {names[1]!r} do not cross"

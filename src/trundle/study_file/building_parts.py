@@ -26,12 +26,14 @@ from trundle.structure.building import (
 )
 from trundle.study_file.building_maker import Maker, grid_lines
 from trundle.study_file.building_makes import plates_of, profiles_of
+from trundle.study_file.building_tables import LineSpringsSection
 
 __all__ = ["Origins", "parts_of"]
 
 Origins: TypeAlias = Mapping[str, Sequence[tuple[int, int | None]]]
 """For each kind of part, the number of its table, and of its place in it if it has several."""
 
+_SHORT = 0.02  # m, between two places of a plane
 _DOFS = ("ux", "uy", "uz", "rx", "ry", "rz")
 _HOLDS = {"roller": ("uz",), "pinned": ("ux", "uy", "uz"), "fixed": _DOFS}
 
@@ -43,6 +45,7 @@ def parts_of(
     profiles, wrong = profiles_of(section, materials)
     plates, more = plates_of(section, materials)
     maker = Maker(section, profiles, plates)
+    maker.check_grid()
     parts = {kind: _made(section, maker, kind) for kind in _KINDS}
     planes = [
         plane
@@ -202,6 +205,8 @@ def _supports(maker: Maker, place: str, table: Any) -> list[tuple[int | None, Su
     hold = _HOLDS[table.hold] if isinstance(table.hold, str) else table.hold
     ux, uy, uz, rx, ry, rz = (dof in hold for dof in _DOFS)
     held, springs = (ux, uy, uz, rx, ry, rz), _springs(table.springs)
+    if not _by_line(maker, place, table):
+        return []
     if table.angle % np.pi and any(springs):
         maker.refuse(
             f"{place}.angle",
@@ -226,6 +231,20 @@ def _supports(maker: Maker, place: str, table: Any) -> list[tuple[int | None, Su
     ]
 
 
+def _by_line(maker: Maker, place: str, table: Any) -> bool:
+    """Return whether springs are by the metre where a line has them, and there alone."""
+    by_metre = isinstance(table.springs, LineSpringsSection)
+    if table.springs is None or by_metre == (table.along is not None):
+        return True
+    maker.refuse(
+        f"{place}.springs",
+        "by the metre" if by_metre else "not by the metre",
+        "springs along a line are by the metre, those at places are not",
+        'write "5 MN/m/m" along a line, "5 MN/m" at a place',
+    )
+    return False
+
+
 def _symmetry(maker: Maker, place: str, table: Any) -> Iterator[MirrorPlane]:
     """Give the plane of a table, by an axis and a place on it or by two places."""
     axis, at, along = table.axis, table.at, table.along
@@ -233,8 +252,15 @@ def _symmetry(maker: Maker, place: str, table: Any) -> Iterator[MirrorPlane]:
         yield MirrorPlane.across("xy".index(axis), at)
     elif along is not None and axis is None and at is None:
         line = maker.places(f"{place}.along", along)
-        if np.hypot(*(line[-1] - line[0])) > 0.0:
-            yield MirrorPlane.through(line[[0, -1]])
+        if np.hypot(*(line[1] - line[0])) > _SHORT:
+            yield MirrorPlane.through(line)
+        else:
+            maker.refuse(
+                f"{place}.along",
+                "two places at one",
+                "a plane of symmetry runs along two places",
+                "give two that are apart",
+            )
     else:
         maker.refuse(
             place,

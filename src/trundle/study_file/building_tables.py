@@ -29,7 +29,7 @@ from trundle.study_file.fields import (
     StiffnessPerMetre,
 )
 
-__all__ = ["BuildingSection"]
+__all__ = ["BuildingSection", "LineSpringsSection", "RefineSection"]
 
 Corners = Annotated[tuple[GridPlace, ...], Field(min_length=3)]
 Places = Annotated[tuple[GridPlace, ...], Field(min_length=1)]

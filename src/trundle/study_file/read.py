@@ -10,6 +10,7 @@ from typing import Any, cast
 from pydantic import TypeAdapter, ValidationError
 
 from trundle.errors import Problem, StudyError
+from trundle.study_file.alternatives import by_likeness
 from trundle.study_file.document import StudyFile
 from trundle.study_file.fields import Section
 from trundle.study_file.lines import parse
@@ -136,7 +137,7 @@ def _section(kind: Any, data: Any, place: str, problems: list[Problem]) -> Any:
     try:
         return TypeAdapter(kind).validate_python(data)
     except ValidationError as error:
-        errors = [cast("dict[str, Any]", e) for e in error.errors()]
+        errors = by_likeness([cast("dict[str, Any]", e) for e in error.errors()], data)
         inner = {e["loc"][:n] for e in errors for n in range(len(e["loc"]))}
         problems += [
             _problem(e, place, kind, data)
@@ -212,7 +213,7 @@ def _problem(error: dict[str, Any], place: str, kind: Any, data: Mapping[str, An
     return Problem(
         place=path,
         value=_show(error["input"]),
-        rule=rule_of(error),
+        rule="; or ".join([rule_of(error), *error.get("others", [])]),
         remedy=_remedy(error),
     )
 

@@ -167,6 +167,15 @@ WRONG = {
         table(masses=(Mass(on="slab", along=line((30, 2)), mass=1.0),)),
         "mass[1].at", "nothing on 'slab' at (30, 2) m",
     ),
+    "a plane of symmetry that nothing reaches": (
+        table(symmetry=(MirrorPlane.across(0, 15.0),)), "symmetry[1].at", "a part reaches it",
+    ),
+    "a beam that runs back over itself": (
+        table(beams=(beam((2, 2), (4, 2), (3, 2)),)), "beam[1].along", "count twice",
+    ),
+    "a beam to the moon": (
+        table(beams=(beam((2, 2), (9e9, 2)),)), "beam[1].along", "within 10000 m",
+    ),
     "planes of symmetry at an odd angle": (
         table(
             slabs=(slab(corners=line((0, 0), (8, 0), (8, 5.6))),), columns=(column(4, 2),),

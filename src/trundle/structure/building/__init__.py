@@ -2,6 +2,7 @@
 
 from trundle.structure.building.build import Meshing, build_building, mesh_building
 from trundle.structure.building.checks import building_problems
+from trundle.structure.building.gaps import gaps_of
 from trundle.structure.building.held import Base, Mass, Springs, Support
 from trundle.structure.building.parts import Beam, Brace, Building, Column, Ramp, Slab, Storey, Wall
 from trundle.structure.building.profile import Profile
@@ -23,5 +24,6 @@ __all__ = [
     "Wall",
     "build_building",
     "building_problems",
+    "gaps_of",
     "mesh_building",
 ]

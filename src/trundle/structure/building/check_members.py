@@ -48,6 +48,13 @@ def member_problems(building: Building) -> Iterator[Problem]:
                 rule=f"a line has two places or more, {1e3 * _SHORT:g} mm or more apart",
                 remedy="give where it begins and where it ends",
             )
+        elif _doubles_back(line):
+            yield Problem(
+                place=place,
+                value=shown(line),
+                rule="a line does not run over itself: what lies there would count twice",
+                remedy="remove the places that lead back",
+            )
     for kind in ("column", "wall", "ramp"):
         for i, part in enumerate(parts(building, kind), start=1):
             if building.level(part.bottom) >= building.level(part.top):
@@ -57,6 +64,12 @@ def member_problems(building: Building) -> Iterator[Problem]:
                     rule=f"a {kind} rises from one storey to another",
                     remedy="exchange from and to, or name two storeys",
                 )
+
+
+def _doubles_back(line: Array) -> bool:
+    """Return whether pieces of a line lie on each other."""
+    pieces = [np.stack(pair) for pair in pairwise(line)]
+    return any(shared_length(a, b) > _SHARED for a, b in combinations(pieces, 2))
 
 
 def _columns(building: Building) -> Iterator[Problem]:

@@ -16,6 +16,7 @@ from trundle.structure.mesh.planar import SNAP
 
 __all__ = ["building_problems"]
 
+_FAR = 10_000.0  # m
 _CLOSE = 0.2  # m between storeys
 _SQUARE = 1e-6  # of angles between planes of symmetry
 
@@ -34,7 +35,7 @@ def building_problems(building: Building) -> list[Problem]:
         Places as in a study file, counted from 1: ``column[3].at``.
     """
     for some in (
-        (_storeys, _names),
+        (_far, _storeys, _names),
         (area_problems, member_problems),
         (overlap_problems, joint_problems, _symmetry),
     ):
@@ -42,6 +43,21 @@ def building_problems(building: Building) -> list[Problem]:
         if found:
             return found
     return []
+
+
+def _far(building: Building) -> Iterator[Problem]:
+    """Give places that are further off than any building reaches."""
+    for kind in ("slab", "beam", "wall", "column", "ramp", "support", "mass", "brace"):
+        for i, part in enumerate(parts(building, kind), start=1):
+            for key in ("outline", "along", "at", "ends"):
+                places = getattr(part, key, None)
+                if places is not None and np.abs(places).max(initial=0.0) > _FAR:
+                    yield Problem(
+                        place=f"{kind}[{i}].{key}",
+                        value=f"{np.abs(places).max():.3g} m",
+                        rule=f"places lie within {_FAR:g} m of the origin",
+                        remedy="check the unit, or give coordinates from a corner of the building",
+                    )
 
 
 def _storeys(building: Building) -> Iterator[Problem]:
@@ -103,6 +119,14 @@ def _symmetry(building: Building) -> Iterator[Problem]:
     places = np.concatenate(rows)
     for i, plane in enumerate(building.symmetry, start=1):
         away = plane.away(places)
+        if np.abs(away).min() > SNAP:
+            yield Problem(
+                place=f"symmetry[{i}].at",
+                value=str(plane),
+                rule="a plane of symmetry ends the model: a part reaches it",
+                remedy="move it to where the model ends, or remove it: loads would have images "
+                "beyond it",
+            )
         if away.min() < -SNAP and away.max() > SNAP:
             yield Problem(
                 place=f"symmetry[{i}].at",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -13,7 +13,7 @@ from trundle.structure.building.held import ON_PLANE, Base, share_inside
 from trundle.structure.building.holds import Holds
 from trundle.structure.building.nodes import Nodes
 from trundle.structure.building.parts import Building
-from trundle.structure.building.sheets import passes
+from trundle.structure.building.sheets import has_slab, passes
 from trundle.structure.elements import GROUND, PointMasses, SpringGroup
 from trundle.structure.links import RigidLinks
 from trundle.structure.mesh.merging import linked
@@ -117,21 +117,50 @@ def heads(building: Building, mesh: SheetMesh, nodes: Nodes) -> tuple[RigidLinks
     """Return which nodes of slabs lie in the cross-section of a column, and follow its axis."""
     leads, behind = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)]
     there = {s.name: mesh.of(i) for i, s in enumerate(building.storeys)}
+    may_follow = _followers(building, mesh, nodes)
     for column in building.columns:
         if column.head == "point":
             continue
         for storey in building.between(column.bottom, column.top):
-            if not passes(building, column, storey.name):
+            joined = has_slab(building, storey.name, column.at)
+            if not joined or not passes(building, column, storey.name):
                 continue
             head = nodes.at(storey.name, column.at, f"column {column.name!r}")
             some = there[storey.name]
             near = np.abs(mesh.nodes[some, :2] - column.at).max(axis=1)
             some = some[near <= np.hypot(column.profile.depth, column.profile.width)]
             follow = some[covers(column.footprint, (), mesh.nodes[some, :2])]
-            follow = follow[follow != head]
+            follow = follow[(follow != head) & may_follow(head, follow)]
             leads.append(np.full(len(follow), head))
             behind.append(follow)
     return _as_blocks(np.concatenate(leads), np.concatenate(behind))
+
+
+def _followers(
+    building: Building, mesh: SheetMesh, nodes: Nodes
+) -> Callable[[int, Array], Bool[Array, " some"]]:
+    """Return what says which nodes may follow another: those that nothing holds otherwise.
+
+    What a support holds does not move as a column's axis does, nor does what lies in a plane of
+    symmetry, unless the axis lies in it too.
+    """
+    free = np.ones(len(mesh.nodes), dtype=bool)
+    for base, some, _ in _feet(building, mesh, nodes):
+        if isinstance(base, str):
+            free[some] = False
+    for support in building.supports:
+        if any(support.held):
+            free[_pieces(building, mesh, support.on, support.along)[0]] = False
+    on = [np.abs(plane.away(mesh.nodes)) < ON_PLANE for plane in building.mirrors]
+
+    def may_follow(head: int, some: Array) -> Array:
+        """Return which of some nodes may follow a head."""
+        out = free[some]
+        for plane in on:
+            out &= ~plane[some] | bool(plane[head])
+        return out
+
+    return may_follow
 
 
 def _as_blocks(leads: Array, behind: Array) -> tuple[RigidLinks, ...]:

@@ -63,6 +63,9 @@ class Nodes:
     def merged(self) -> tuple[Float[Array, "nodes 3"], Int[Array, " made"]]:
         """Return the places of all nodes [m], and the number of each as it was given out."""
         places, maker = np.concatenate(self._places), np.concatenate(self._maker)
-        # nodes of the sheets come first, and keep their numbers
-        first, number = np.unique(first_there(places, _SAME, apart=maker), return_inverse=True)
+        one = np.arange(len(places))
+        # nodes of the sheets come first, keep their numbers, and are joined to nothing by chance
+        made = np.flatnonzero(maker > 0)
+        one[made] = made[first_there(places[made], _SAME, apart=maker[made])]
+        first, number = np.unique(one, return_inverse=True)
         return places[first], number

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -16,7 +16,7 @@ from trundle.structure.mesh.planar import SNAP, on_segment
 from trundle.structure.mesh.polygons import covers
 from trundle.structure.mesh.sheet import Area, Sheet, Tie
 
-__all__ = ["Guides", "passes", "plane_of", "sheets_of", "ties_of"]
+__all__ = ["Guides", "has_slab", "meets", "passes", "plane_of", "sheets_of", "ties_of"]
 
 
 Guides: TypeAlias = Mapping[str, Sequence[Float[Array, "_ 2"]]]
@@ -32,14 +32,13 @@ def sheets_of(building: Building, guides: Guides) -> tuple[Sheet, ...]:
 def _storey_sheet(building: Building, name: str, level: float, guides: Guides) -> Sheet:
     slabs = [(i, slab) for i, slab in enumerate(building.slabs) if slab.on == name]
     areas = [
-        Area(outline=s.outline, openings=s.openings, tag=i)
+        Area(outline=s.outline, openings=s.openings, tag=i, over=s.panel)
         for i, s in sorted(slabs, key=lambda pair: pair[1].panel)  # panels take over
     ]
     lines = [*_lines_on(building, name, guides)]
     lines += [w.along for w in building.walls if name in _names(building, w.bottom, w.top)]
     lines += [*_ramp_edges(building, name)]
     nodes = [column.at for column in building.columns if passes(building, column, name)]
-    nodes += [brace.ends[i] for brace in building.braces for i in (0, 1) if brace.on[i] == name]
     lines += [*_heads(building, name, areas)]
     return Sheet(
         name=name,
@@ -79,7 +78,8 @@ def _lines_on(building: Building, name: str, guides: Guides) -> Iterator[Array]:
 def _points_on(building: Building, name: str, guides: Guides) -> Array:
     """Return the places of point supports, masses and guides on a sheet."""
     single = [line for line in _laid(building, name, guides) if len(line) == 1]
-    return np.concatenate([np.zeros((0, 2)), *single])
+    braces = [b.ends[i][None] for b in building.braces for i in (0, 1) if b.on[i] == name]
+    return np.concatenate([np.zeros((0, 2)), *braces, *single])
 
 
 def _laid(building: Building, name: str, guides: Guides) -> Iterator[Array]:
@@ -107,13 +107,25 @@ def passes(building: Building, column: Column, name: str) -> bool:
 def meets(building: Building, name: str, place: Float[Array, " 2"]) -> bool:
     """Return whether a slab, a beam, a wall or a ramp's edge of a storey is at a place."""
     at = place[None]
-    if any(s.on == name and covers(s.outline, s.openings, at)[0] for s in building.slabs):
+    if has_slab(building, name, place):
         return True
     lines = [beam.along for beam in building.beams if beam.on == name]
     lines += [w.along for w in building.walls if name in _names(building, w.bottom, w.top)]
     lines += [*_ramp_edges(building, name)]
     pairs = (np.stack(pair) for line in lines for pair in pairwise(line))
     return any(on_segment(at, pair)[0] for pair in pairs)
+
+
+def has_slab(building: Building, name: str, place: Float[Array, " 2"]) -> bool:
+    """Return whether a slab of a storey is at a place, and no panel has an opening there."""
+    at, slabs = place[None], [s for s in building.slabs if s.on == name]
+    if not any(covers(s.outline, s.openings, at)[0] for s in slabs if not s.panel):
+        return False
+    return all(
+        covers(s.outline, s.openings, at)[0] or not covers(s.outline, (), at)[0]
+        for s in slabs
+        if s.panel
+    )
 
 
 def _names(building: Building, bottom: str, top: str) -> list[str]:
@@ -148,4 +160,26 @@ def ties_of(building: Building) -> tuple[Tie, ...]:
     for ramp in building.ramps:
         for storey, edge in ((ramp.bottom, ramp.outline[:2]), (ramp.top, ramp.outline[2:])):
             found.append(Tie(sheets=(number[storey], number[ramp.name]), line=edge))
+    for one, other in combinations(building.ramps, 2):
+        for line in _shared_edges(building, one, other):
+            found.append(Tie(sheets=(number[one.name], number[other.name]), line=line))
     return tuple(found)
+
+
+def _shared_edges(building: Building, one: Ramp, other: Ramp) -> Iterator[Float[Array, "2 2"]]:
+    """Give the lines along which two ramps lie beside each other at one height."""
+    planes = [plane_of(building, ramp) for ramp in (one, other)]
+    for a in _sides(one):
+        for b in _sides(other):
+            along = (a[1] - a[0]) / np.hypot(*(a[1] - a[0]))
+            aside = np.abs((b - a[0]) @ np.array([-along[1], along[0]]))
+            reach = np.sort((b - a[0]) @ along)
+            low, high = max(reach[0], 0.0), min(reach[1], float(np.hypot(*(a[1] - a[0]))))
+            line = a[0] + np.outer([low, high], along)
+            z = np.column_stack([np.ones(2), line]) @ np.transpose(planes)
+            if aside.max() < SNAP and high - low > SNAP and np.abs(np.diff(z)).max() < SNAP:
+                yield line
+
+
+def _sides(ramp: Ramp) -> Iterator[Float[Array, "2 2"]]:
+    yield from np.stack([ramp.outline, np.roll(ramp.outline, -1, axis=0)], axis=1)

@@ -195,7 +195,12 @@ def _tags(polygons: Array, areas: Sequence[Area]) -> Array:
     for area in areas:
         shape = shapely.Polygon(area.outline, area.openings)
         shapely.prepare(shape)
-        tags[shapely.contains(shape, within)] = area.tag
+        inside_it = shapely.contains(shape, within)
+        if area.over:
+            whole = shapely.Polygon(area.outline)
+            tags[shapely.contains(whole, within) & ~inside_it] = -1
+            inside_it &= tags >= 0
+        tags[inside_it] = area.tag
     return tags
 
 

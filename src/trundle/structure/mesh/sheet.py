@@ -25,11 +25,15 @@ class Area:
         Corners of its openings [m].
     tag : int
         What it is made of; elements are gathered by it.
+    over : bool
+        Whether it only changes what others are made of, where they are: it fills no opening, its
+        own openings go through them, and it reaches no further.
     """
 
     outline: Float[Array, "corners 2"]
     openings: tuple[Float[Array, "_ 2"], ...] = ()
     tag: int = 0
+    over: bool = False
 
     def __post_init__(self) -> None:
         """Freeze the corners."""

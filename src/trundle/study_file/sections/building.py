@@ -14,9 +14,10 @@ from trundle.structure import Floor
 from trundle.structure.building import Building, Meshing, build_building, building_problems
 from trundle.structure.mesh import Refinement
 from trundle.study_file.building_drawing import Drawn, drawn_of, line_on, place_on
+from trundle.study_file.building_maker import Maker
 from trundle.study_file.building_makes import materials_of
 from trundle.study_file.building_parts import Origins, parts_of
-from trundle.study_file.building_tables import BuildingSection
+from trundle.study_file.building_tables import BuildingSection, RefineSection
 from trundle.study_file.draft import Draft
 from trundle.study_file.kinds import SectionKind
 
@@ -50,7 +51,9 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         return draft, found
     wrong = (_placed(problem, origins) for problem in building_problems(building))
     found += [_as_drawn(problem, drawn) for problem in wrong]
-    meshing = _meshing(draft, section, building)
+    maker = Maker(section, {}, {})
+    meshing = _meshing(draft, section, building, maker)
+    found += maker.problems
     found += _too_fine(building, meshing)
     if found:
         return draft, found
@@ -166,19 +169,31 @@ def _more_nodes(one: Refinement, size: float, area: float, n_floors: int) -> flo
     return (within + beyond) * (n_floors if one.sheet is None else 1)
 
 
-def _meshing(draft: Draft, section: BuildingSection, building: Building) -> Meshing:
+def _refined(
+    one: RefineSection, place: str, building: Building, maker: Maker
+) -> Iterator[Refinement]:
+    """Give the refinements of a table; keep what would refine nothing."""
+    if one.on is not None and one.on not in building.floors:
+        known = f"there are: {', '.join(building.floors)}"
+        maker.refuse(f"{place}.on", repr(one.on), "must be the name of a storey or ramp", known)
+    if one.size >= maker.mesh_size:
+        maker.refuse(
+            f"{place}.size",
+            f"{one.size:g} m",
+            f"elements are smaller than mesh_size = {maker.mesh_size:g} m where they are refined",
+            "make it smaller, or remove the table",
+        )
+    for _, line in maker.line_or_places(place, one):
+        yield Refinement(line=line, size=one.size, reach=one.reach, sheet=one.on)
+
+
+def _meshing(draft: Draft, section: BuildingSection, building: Building, maker: Maker) -> Meshing:
     """Return how a building is meshed: finer where asked, and along routes and points."""
     refinements: list[Refinement] = []
     guides: dict[str, list[Any]] = {}
     default = building.floors[0] if len(building.floors) == 1 else None
-    for one in section.refine:
-        lines = [one.along] if one.along else [(place,) for place in one.at or ()]
-        refinements += [
-            Refinement(
-                line=np.array(line, dtype=float), size=one.size, reach=one.reach, sheet=one.on
-            )
-            for line in lines
-        ]
+    for i, one in enumerate(section.refine, start=1):
+        refinements += _refined(one, f"building.refine[{i}]", building, maker)
     for route in draft.file.items("route"):
         line, on = np.array(route.path, dtype=float), route.on or default
         if section.size_at_routes is not None:

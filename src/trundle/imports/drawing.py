@@ -8,6 +8,7 @@ lines, and what is not understood is counted, layer by layer, for whoever asks.
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from __future__ import annotations
 
+import logging
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -110,6 +111,9 @@ def read_drawing(path: Path, *, unit: float | None, origin: tuple[float, float])
 def _document(path: Path) -> Any:  # noqa: ANN401 - ezdxf's
     from ezdxf import recover  # noqa: PLC0415 - a third of a second, for drawings alone
 
+    log = logging.getLogger("ezdxf")  # says what it mends of a file, in its own words
+    level = log.level
+    log.setLevel(logging.CRITICAL + 1)
     try:
         if path.stat().st_size > _LARGEST:
             raise InputError(
@@ -122,6 +126,8 @@ def _document(path: Path) -> Any:  # noqa: ANN401 - ezdxf's
         raise InputError(f"{path.name} cannot be read: {error.strerror or error}") from None
     except Exception:  # ezdxf raises many unrelated types on what is no drawing
         raise InputError(f"{path.name} is no DXF drawing that can be read") from None
+    finally:
+        log.setLevel(level)
     return document
 
 

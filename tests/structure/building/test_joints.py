@@ -154,3 +154,43 @@ def test_columns_of_a_storey_without_a_slab_meet_beams_at_a_point():
     assert floors[0].links == floors[1].links == ()
     f = [floor.modes(60.0).frequencies[:3] for floor in floors]
     np.testing.assert_allclose(f[0], f[1], rtol=5e-3)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.6])
+def test_a_hinged_beam_on_brackets_alone_stands(angle):
+    """Nothing turns with its ends: ``pi / 2 / L^2 sqrt(E I / m)``, less what shear takes, 2 %."""
+    span, turn = 8.0, np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    along = line((0, 0), (span, 0)) @ turn
+    brackets = [
+        Support(on="slab", along=end[None], held=(True, True, True, False, False, False))
+        for end in along
+    ]
+    about_itself = Support(
+        on="slab",
+        along=along[:1],
+        held=(False,) * 3 + (True, False, False),
+        angle=np.degrees(angle),
+    )
+    house = Building(
+        storeys=LEVELS[1:],
+        beams=(Beam(on="slab", profile=SMALL, along=along, hinged=(True, True)),),
+        supports=(*brackets, about_itself),
+    )
+    section = SMALL.section
+    e, rho = CONCRETE.elastic_modulus, CONCRETE.density
+    found = built(house, 0.5).modes(200.0).frequencies
+    for inertia in (section.inertia_y, section.inertia_z):
+        exact = np.pi / 2 / span**2 * np.sqrt(e * inertia / (rho * section.area))
+        assert np.abs(found / exact - 1.0).min() < 0.02
+
+
+def test_a_hinge_at_a_free_end_is_none():
+    """A cantilever whose free end is hinged has the frequencies of one whose is not."""
+
+    def cantilever(hinged):
+        held = Support(on="slab", along=line((0, 0)), held=(True,) * 6)
+        beam = Beam(on="slab", profile=SMALL, along=line((0, 0), (6, 0)), hinged=(False, hinged))
+        return built(Building(storeys=LEVELS[1:], beams=(beam,), supports=(held,)), 0.5)
+
+    f = [cantilever(hinged).modes(60.0).frequencies[:3] for hinged in (False, True)]
+    np.testing.assert_allclose(f[1], f[0], rtol=1e-3)

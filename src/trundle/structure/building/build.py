@@ -15,6 +15,7 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.building.checks import building_problems
 from trundle.structure.building.holding import heads, held_dofs, masses, springs
+from trundle.structure.building.idle import idle_rotations
 from trundle.structure.building.members import (
     SlabThickness,
     laid_beams,
@@ -130,14 +131,17 @@ def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
     members = list(chain.from_iterable(one.groups(xyz, number, building.mirrors) for one in laid))
     quads, triangles = _faces(building, mesh)
     wall_groups = [ShellGroup(elements=number[e], section=w.section, name=w.name) for w, e in walls]
-    fixed, angles = held_dofs(building, mesh, nodes, xyz)
+    grounded = tuple(springs(building, mesh, nodes))
+    stiff = (*quads.values(), *triangles.values(), *wall_groups, *members, *grounded)
+    idle = idle_rotations(xyz, stiff, links)
+    fixed, angles = held_dofs(building, mesh, nodes, xyz, idle)
     return Floor(
         nodes=xyz,
         fixed=fixed,
         angles=angles,
         shells=(*quads.values(), *wall_groups),
         beams=tuple(one for one in members if isinstance(one, BeamGroup)),
-        springs=tuple(springs(building, mesh, nodes)),
+        springs=grounded,
         masses=tuple(masses(building, mesh)),
         others=(*triangles.values(), *(o for o in members if not isinstance(o, BeamGroup))),
         links=links,

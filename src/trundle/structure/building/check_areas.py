@@ -102,7 +102,8 @@ def overlap_problems(building: Building) -> Iterator[Problem]:
                 place=f"slab[{j}].outline",
                 value=f"{shared:.3g} m2 shared with slab {i}",
                 rule="slabs of a storey must not overlap: which one would be there?",
-                remedy="draw them side by side; a thicker part over another has panel = true",
+                remedy="draw them side by side"
+                + ("" if one.panel else "; a thicker part over another has panel = true"),
             )
     for i, slab in numbered:
         under = [s for s in building.slabs if s.on == slab.on and not s.panel]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -28,9 +28,16 @@ _ACROSS_X = np.array([True, False, False, False, True, True])
 
 
 def held_dofs(
-    building: Building, mesh: SheetMesh, nodes: Nodes, xyz: Float[Array, "nodes 3"]
+    building: Building,
+    mesh: SheetMesh,
+    nodes: Nodes,
+    xyz: Float[Array, "nodes 3"],
+    idle: Iterable[tuple[int, Bool[Array, " 6"], float]],
 ) -> tuple[Bool[Array, "nodes 6"], Float[Array, "nodes 2"] | None]:
-    """Return which dofs are held, and how far the axes are turned along which they are."""
+    """Return which dofs are held, and how far the axes are turned along which they are.
+
+    `idle` are rotations that turn nothing, see `idle_rotations`.
+    """
     holds = Holds(len(xyz))
     for base, some, _ in _feet(building, mesh, nodes):
         if isinstance(base, str):
@@ -42,6 +49,8 @@ def held_dofs(
         on = np.flatnonzero(np.abs(plane.away(xyz)) < ON_PLANE)
         # no motion across it, and no rotation out of it
         holds.add(on, _ACROSS_X, float(np.arctan2(plane.normal[1], plane.normal[0])))
+    for node, held, angle in idle:
+        holds.add(np.array([node]), held, angle)
     return holds.found()
 
 

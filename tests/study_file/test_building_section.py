@@ -343,6 +343,22 @@ def test_alternatives_of_a_key_are_told_once_in_our_words(old, new):
     assert len(places) == len(set(places))
 
 
+def test_elements_are_small_at_supports_columns_and_walls():
+    """Within 0.5 m of a column's axis elements are as small as asked for, on each of its storeys."""
+    size = 'mesh_size = "1.5 m"'
+    plain, fine = (
+        loaded((size, f"{size}\n{more}")).floor for more in ("", 'size_at_supports = "0.3 m"')
+    )
+    for level in (3.0, 6.5):
+        near = [
+            np.count_nonzero(
+                (np.hypot(*(f.nodes[:, :2] - (8.0, 6.0)).T) < 0.8) & (f.nodes[:, 2] == level)
+            )
+            for f in (plain, fine)
+        ]
+        assert near[1] > 1.5 * near[0]
+
+
 def test_elements_are_small_where_grid_lines_cross():
     fine = loaded(("[[building.column]]", '[[building.refine]]\non = "deck"\nat = ["A/1"]\nsize = "0.2 m"\n\n[[building.column]]')).floor  # fmt: skip
     near = np.hypot(*(fine.nodes[:, :2]).T) < 0.6

@@ -279,6 +279,7 @@ class BuildingSection(Section):
     elements: Literal["quadrilaterals", "triangles"] = "quadrilaterals"
     size_at_routes: PositiveLength | None = None
     size_at_points: PositiveLength | None = None
+    size_at_supports: PositiveLength | None = None
     nodes_at_points: Flag = False
     edges_along_routes: Flag = False
     north: Angle | None = None

@@ -60,6 +60,17 @@ def test_a_rectangle_is_a_grid_of_its_own_size():
     mesh = mesh_sheets([Sheet(name="s", areas=(Area(outline=box(0, 0, 10, 4)),))], size=1.0)
     assert (len(mesh.quads), len(mesh.triangles), len(mesh.nodes)) == (40, 0, 55)
     assert area_of(mesh, mesh.quads) == pytest.approx(np.ones(40))
+    assert mesh.quality.share_of_rectangles == 1.0
+
+
+def test_the_share_of_rectangles_is_of_the_area():
+    """A grid of 5 x 4 m beside a parallelogram of as much: a half."""
+    areas = (
+        Area(outline=box(0, 0, 5, 4)),
+        Area(outline=np.array([[5.0, 0], [10, 2], [10, 6], [5, 4]]), tag=1),
+    )
+    mesh = mesh_sheets([Sheet(name="s", areas=areas)], size=1.0)
+    assert mesh.quality.share_of_rectangles == pytest.approx(0.5, rel=1e-9)
 
 
 def test_columns_and_openings_in_an_l_are_met_by_good_elements():

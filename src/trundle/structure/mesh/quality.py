@@ -13,6 +13,9 @@ from trundle._typing import Array
 __all__ = ["MeshQuality", "angles", "aspects", "quality_of", "signed_areas", "squareness"]
 
 
+_RIGHT = 1e-4  # of a right angle, by which those of a rectangle may be off
+
+
 @dataclass(frozen=True, kw_only=True)
 class MeshQuality:
     """Hold how well elements are shaped.
@@ -27,6 +30,8 @@ class MeshQuality:
         Longest side over shortest.
     share_of_quads : float
         Part of the area that quadrilaterals cover.
+    share_of_rectangles : float
+        Part of the area that rectangles cover.
     """
 
     n_quads: int
@@ -35,6 +40,7 @@ class MeshQuality:
     largest_angle: float
     largest_aspect: float
     share_of_quads: float
+    share_of_rectangles: float
 
 
 def quality_of(shapes: Iterable[Float[Array, "_ _ 2"]]) -> MeshQuality:
@@ -43,7 +49,11 @@ def quality_of(shapes: Iterable[Float[Array, "_ _ 2"]]) -> MeshQuality:
     turns = np.degrees(np.concatenate([angles(shape).ravel() for shape in groups]))
     areas = dict.fromkeys((3, 4), 0.0)
     counts = dict.fromkeys(areas, 0)
+    square = 0.0
     for shape in groups:
+        if shape.shape[1] == 4:
+            right = squareness(shape) > 1.0 - _RIGHT
+            square += float(np.abs(signed_areas(shape[right])).sum())
         areas[shape.shape[1]] += float(np.abs(signed_areas(shape)).sum())
         counts[shape.shape[1]] += len(shape)
     return MeshQuality(
@@ -53,6 +63,7 @@ def quality_of(shapes: Iterable[Float[Array, "_ _ 2"]]) -> MeshQuality:
         largest_angle=float(turns.max()),
         largest_aspect=float(max(aspects(shape).max() for shape in groups)),
         share_of_quads=areas[4] / sum(areas.values()),
+        share_of_rectangles=square / sum(areas.values()),
     )
 
 

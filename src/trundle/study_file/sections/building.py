@@ -187,6 +187,19 @@ def _refined(
         yield Refinement(line=line, size=one.size, reach=one.reach, sheet=one.on)
 
 
+def _at_supports(section: BuildingSection, building: Building) -> Iterator[Refinement]:
+    """Give refinements at supports, columns and walls, on every storey that these meet."""
+    size = section.size_at_supports
+    if size is None:
+        return
+    for support in building.supports:
+        yield Refinement(line=support.along, size=size, reach=1.0, sheet=support.on)
+    columns = [(column, column.at[None]) for column in building.columns]
+    for part, line in (*columns, *((wall, wall.along) for wall in building.walls)):
+        for storey in building.between(part.bottom, part.top):
+            yield Refinement(line=line, size=size, reach=1.0, sheet=storey.name)
+
+
 def _meshing(draft: Draft, section: BuildingSection, building: Building, maker: Maker) -> Meshing:
     """Return how a building is meshed: finer where asked, and along routes and points."""
     refinements: list[Refinement] = []
@@ -210,6 +223,7 @@ def _meshing(draft: Draft, section: BuildingSection, building: Building, maker: 
             )
         if section.nodes_at_points and on is not None:
             guides.setdefault(on, []).append(place)
+    refinements += _at_supports(section, building)
     return Meshing(
         mesh_size=float(section.mesh_size),
         refinements=tuple(refinements),

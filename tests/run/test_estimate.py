@@ -97,4 +97,4 @@ def test_two_meshes_ask_too(study, monkeypatch, capsys):
     code, output = run_main(monkeypatch, capsys, "check", path, "--meshes")
     assert code == 2
     assert "on half its mesh size: it would take" in output.err
-    assert run_main(monkeypatch, capsys, "check", path, "--meshes", "--json")[0] == 2
+    assert run_main(monkeypatch, capsys, "check", path, "--mesh", "--json")[0] == 2

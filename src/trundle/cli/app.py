@@ -206,7 +206,9 @@ def check(
     meshes: Annotated[
         bool,
         typer.Option(
-            "--meshes", help="Compute a few runs on half the mesh size too, and show the change."
+            "--mesh",
+            "--meshes",
+            help="Compute a few runs on half the mesh size too, and show the change.",
         ),
     ] = False,
     as_json: options.Json = False,

@@ -67,3 +67,22 @@ def test_ends_that_miss_a_part_by_millimetres_are_told():
     assert told["0.0005"] == told["0.2"] == []
     assert len(told["0.005"]) == 1
     assert "ends at (0.005, 3) m on 'roof', 5 mm from beam" in told["0.005"][0]
+
+
+def test_a_route_through_a_wall_or_a_column_is_told():
+    """The aisle runs along y = 5 m on the deck; a wall across it, and a post that rises from it."""
+    wall = '[[building.wall]]\nplate = "wall"\nalong = [["6 m", "4 m"], ["6 m", "6 m"]]\nfrom = "{}"\nto = "{}"\n{}\n\n'
+    post = '[[building.column]]\nsection = "post"\nat = [["9 m", "5.1 m"]]\nfrom = "deck"\nto = "lab"\n\n'
+    rising = wall.format("deck", "lab", "") + post
+    under = wall.format("ground", "deck", 'base = "fixed"')
+    told = {}
+    for name, more in (("rising", rising), ("under", under), ("none", "")):
+        study = tr.study_from_text(
+            BUILDING.replace("[[building.column]]", more + "[[building.column]]", 1)
+        )
+        told[name] = [d.message for d in study_doubts(study) if d.subject == "route"]
+    assert told["under"] == told["none"] == []
+    assert len(told["rising"]) == 2
+    assert "runs through wall" in told["rising"][0]
+    assert "(6, 5) m" in told["rising"][0]
+    assert "runs through column" in told["rising"][1]

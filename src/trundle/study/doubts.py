@@ -20,7 +20,7 @@ from trundle.structure import (
     resolved_frequency,
     resolving_mesh_size,
 )
-from trundle.structure.building import Building
+from trundle.structure.building import Building, in_the_way
 from trundle.study.doubts_mesh import gap_doubts, shape_doubts
 from trundle.study.doubts_values import value_doubts
 from trundle.study.model import Study
@@ -109,8 +109,25 @@ def _of_building(study: Study, building: Building) -> Iterator[FitnessWarning]:
     reach = building_resolution(plates, study.mesh_size)
     if plates and len(bands) and bands[-1] > reach:
         yield _coarse(study, bands, reach, building_mesh_size(plates, float(bands[-1])))
+    yield from _ways(study, building)
     yield from gap_doubts(building)
     yield from shape_doubts(study)
+
+
+def _ways(study: Study, building: Building) -> Iterator[FitnessWarning]:
+    """Doubt routes through walls and columns."""
+    storeys = [storey.name for storey in building.storeys]
+    for name, drive in study.drives.items():
+        on = drive.route.on or next(iter(study.floor.surfaces))
+        if on not in storeys:
+            continue
+        line = study.in_plan(drive.route.points, drive.route.on)
+        for part, x, y in in_the_way(building, on, line):
+            yield FitnessWarning(
+                subject="route",
+                message=f"{name} runs through {part} at ({x:.4g}, {y:.4g}) m, which stands on "
+                f"{on!r}: lead it round, unless there is a gate",
+            )
 
 
 def _mesh(study: Study, plan: FloorPlan) -> Iterator[FitnessWarning]:

@@ -316,3 +316,15 @@ def test_a_node_moves_in_what_its_elements_carry_alone():
     assert (floor.dof_index[2] >= 0).tolist() == [False, False, True, False, False, False]
     assert floor.n_dofs == 6 + 1
     assert np.linalg.matrix_rank(floor.stiffness.toarray()) == floor.n_dofs
+
+
+def test_masses_of_nodes_are_each_their_own():
+    """Given by node or all at once; the mass matrix holds each three times, and none below 0."""
+    group = PointMasses(nodes=np.array([4, 7]), mass=np.array([2.0, 5.0]))
+    blocks = group.mass_blocks(np.zeros((2, 1, 3)))
+    assert [np.diag(block).tolist() for block in blocks] == [
+        [m] * 3 + [0.0] * 3 for m in (2.0, 5.0)
+    ]
+    assert PointMasses(nodes=np.array([4, 7]), mass=3.0).mass.tolist() == [3.0, 3.0]
+    with pytest.raises(InputError, match="0 or more"):
+        PointMasses(nodes=np.array([4]), mass=-1.0)

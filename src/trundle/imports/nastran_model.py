@@ -26,7 +26,7 @@ from trundle.structure import (
     SpringGroup,
     TriangleGroup,
 )
-from trundle.structure.elements import GROUND, Elements, LumpedMasses, ReleasedBeams
+from trundle.structure.elements import GROUND, Elements, ReleasedBeams
 
 __all__ = ["floor_of"]
 
@@ -66,8 +66,8 @@ class _Builder:
             shells=tuple(shells),
             beams=tuple(bar for bar in bars if isinstance(bar, BeamGroup)),
             springs=tuple(self._springs()),
-            masses=tuple(self._masses()),
-            others=(*triangles, *(b for b in bars if not isinstance(b, BeamGroup)), *lumps),
+            masses=(*self._masses(), *lumps),
+            others=(*triangles, *(b for b in bars if not isinstance(b, BeamGroup))),
             links=self._links(),
             name=self._name,
         )
@@ -88,10 +88,10 @@ class _Builder:
         share = np.repeat(masses / elements.shape[1], elements.shape[1])
         np.add.at(self._lumps, elements.ravel(), share)
 
-    def _lumped(self) -> Iterator[LumpedMasses]:
+    def _lumped(self) -> Iterator[PointMasses]:
         heavy = np.flatnonzero(self._lumps)
         if len(heavy):
-            yield LumpedMasses(nodes=heavy, mass=self._lumps[heavy])
+            yield PointMasses(nodes=heavy, mass=self._lumps[heavy], name="lumped mass")
 
     def _faces(self) -> tuple[list[ShellGroup], list[Elements]]:
         found: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
@@ -175,10 +175,9 @@ class _Builder:
         return replace(make.section, material=replace(material, density=density))
 
     def _masses(self) -> Iterator[PointMasses]:
-        found: dict[float, list[int]] = defaultdict(list)
-        for number, mass in self._deck.masses:
-            found[mass * self._deck.weight_to_mass].append(self._node(number, "a CONM2"))
-        for mass, at in found.items():
+        if self._deck.masses:
+            at = [self._node(number, "a CONM2") for number, _ in self._deck.masses]
+            mass = self._deck.weight_to_mass * np.array([mass for _, mass in self._deck.masses])
             yield PointMasses(nodes=np.array(at), mass=mass, name="CONM2")
 
     def _springs(self) -> Iterator[SpringGroup]:

@@ -16,6 +16,7 @@ from trundle.structure.mesh.planar import SNAP
 
 __all__ = ["Gap", "gaps_of"]
 
+_ROUND_OFF = 1e-6  # m
 _NEAR = 0.05  # m, within which parts are likely to be meant to meet
 
 
@@ -46,10 +47,10 @@ def gaps_of(building: Building) -> Iterator[Gap]:
         at, other = tree.query(shapely.points(ends), predicate="dwithin", distance=_NEAR)
         slabs = shapely.union_all(
             [shapely.Polygon(s.outline, s.openings) for s in building.slabs if s.on == storey.name]
-        )
+        ).buffer(_ROUND_OFF)
         for i, j in zip(at.tolist(), other.tolist(), strict=True):
             way = shapely.shortest_line(shapely.Point(ends[i]), shapes[j])
-            if owner[i] == j or way.length <= SNAP or slabs.buffer(1e-6).covers(way):
+            if owner[i] == j or way.length <= SNAP or slabs.covers(way):
                 continue
             x, y = ends[i].tolist()
             yield Gap(storey.name, lines[owner[i]][0], (x, y), lines[j][0], float(way.length))

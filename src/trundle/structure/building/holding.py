@@ -111,8 +111,8 @@ def springs(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[Sprin
 def masses(building: Building, mesh: SheetMesh) -> Iterator[PointMasses]:
     """Give point masses, those of lines by the length that belongs to each node."""
     for mass in building.masses:
-        for share, at in _alike(*_pieces(building, mesh, mass.on, mass.along)):
-            yield PointMasses(nodes=at, mass=share * mass.mass, name=mass.name)
+        some, length = _pieces(building, mesh, mass.on, mass.along)
+        yield PointMasses(nodes=some, mass=mass.mass * length, name=mass.name)
 
 
 def _alike(nodes: Array, lengths: Array) -> Iterator[tuple[float, Array]]:

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from trundle._typing import Array
-from trundle.structure.elements import GROUND, Elements, PointMasses, ReleasedBeams, SpringGroup
+from trundle.structure.elements import GROUND, Elements, ReleasedBeams, SpringGroup
 from trundle.structure.links import RigidLinks
 
 __all__ = ["idle_rotations"]
@@ -40,8 +40,8 @@ def idle_rotations(
         return
     turned = np.zeros(len(nodes), dtype=bool)
     for group in groups:
-        stiff = isinstance(group, SpringGroup) and not group.stiffness[_ROTATIONS].any()
-        if not isinstance(group, ReleasedBeams | PointMasses) and not stiff:
+        straight = isinstance(group, SpringGroup) and not group.stiffness[_ROTATIONS].any()
+        if not isinstance(group, ReleasedBeams) and not straight:
             turned[group.connectivity[group.connectivity != GROUND]] = True
     for link in links:
         turned[link.leads] = turned[link.follows] = True

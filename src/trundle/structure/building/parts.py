@@ -304,7 +304,8 @@ class Building:
         """Where it ends by symmetry: planes with normals that point to it."""
         rows = [slab.outline for slab in (*self.slabs, *self.ramps)]
         rows += [part.along for part in (*self.beams, *self.walls)]
-        places = np.concatenate([*rows, *(column.at[None] for column in self.columns)])
+        rows += [column.at[None] for column in self.columns]
+        places = np.concatenate([np.zeros((0, 2)), *rows])
         return tuple(plane.facing(places) for plane in self.symmetry)
 
     @property

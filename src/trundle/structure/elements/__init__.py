@@ -5,7 +5,6 @@ goes to a floor by ``Floor(others=(group, ...))``. One that wheels can stand on 
 """
 
 from trundle.structure.elements.beam import BeamGroup
-from trundle.structure.elements.lumped_mass import LumpedMasses
 from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Damped, Elements, Standable
 from trundle.structure.elements.quad_shell import ShellGroup
@@ -23,7 +22,6 @@ __all__ = [
     "Hat",
     "Hermite",
     "Located",
-    "LumpedMasses",
     "PointMasses",
     "ReleasedBeams",
     "ShellGroup",

@@ -182,7 +182,7 @@ from trundle.imports.model_format import ModelFormat, ReadModel
 from trundle.structure import CONCRETE, FloorPlan, ShellSection, build_floor
 
 
-def read(path):
+def read(path, asked):
     word, *sizes = path.read_text().split()
     if len(sizes) != 3:
         return ReadModel(structure=None, problems=(Problem(
@@ -198,7 +198,7 @@ def read(path):
 
 
 FORMAT = ModelFormat(
-    name="PLATE", suffixes=(".plate",), claims=lambda data: data.startswith(b"PLATE"), read=read
+    kind="plate", name="PLATE", suffixes=(".plate",), claims=lambda data: data.startswith(b"PLATE"), read=read
 )
 ''',
     "records/formats/toy.py": '''

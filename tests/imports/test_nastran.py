@@ -280,7 +280,7 @@ def test_a_range_holds_the_grids_that_are_there(tmp_path):
 def test_files_of_no_known_format_are_refused(tmp_path):
     path = tmp_path / "plan.txt"
     path.write_text("a list of things\n")
-    with pytest.raises(InputError, match=r"no format that is known: Nastran bulk data"):
+    with pytest.raises(InputError, match=r"no format that is known: .*Nastran bulk data"):
         read_model(path)
     with pytest.raises(InputError, match="no such file"):
         read_model(tmp_path / "none.bdf")

@@ -6,6 +6,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from trundle.cli.afford import what_is_dear
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import say_json
@@ -36,10 +38,11 @@ def check(path: Path, *, as_json: bool = False) -> None:
     for warning in study_doubts(study):
         print(f"warning: {warning}")
     print(f"\n{study.title}")
+    mass = study.floor.moving_mass()
     print(
         f"floor: {study.floor.name}, {len(study.floor.nodes)} nodes, "
         f"{study.floor.n_dofs} degrees of freedom, "
-        f"{study.floor.moving_mass() / 1e3:.0f} t moving vertically"
+        + ("known by its modes" if mass is None else f"{mass / 1e3:.0f} t moving vertically")
     )
     print(f"work:  {cells} cells of {study.runs} runs, records of up to {study.longest_record:g} s")
     estimate = estimate_of(study)
@@ -96,9 +99,11 @@ def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
     floor = load_study(path).floor
     with progress_bar() as tell:
         found = floor.modes(limit, progress=lambda share: tell(f"modes below {limit:g} Hz", share))
-    participation = found.forces(floor.inertia_of(2))
+    inertia = floor.inertia_of(2)
+    unknown = np.full(found.n_modes, np.nan)
+    masses = unknown if inertia is None else found.forces(inertia) ** 2
     if as_json:
-        columns = (found.frequencies, participation**2, found.residuals)
+        columns = (found.frequencies, masses, found.residuals)
         names = ("frequency_hz", "vertical_effective_mass_kg", "residual")
         rows = zip(*columns, strict=True)
         say_json([dict(zip(names, map(float, row), strict=True)) for row in rows])
@@ -107,11 +112,19 @@ def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
         f"{floor.name}: {found.n_modes} modes below {limit:g} Hz",
         ("mode", "f [Hz]", "vertical effective mass [t]", "residual"),
         (
-            (str(i + 1), f"{f:.3f}", f"{participation[i] ** 2 / 1e3:.1f}", f"{residual:.0e}")
+            (str(i + 1), f"{f:.3f}", _known(masses[i] / 1e3, ".1f"), _known(residual, ".0e"))
             for i, (f, residual) in enumerate(zip(found.frequencies, found.residuals, strict=True))
         ),
     )
-    print("The count agrees with Sylvester's law of inertia: none is missing.")
+    if floor.has_matrices:
+        print("The count agrees with Sylvester's law of inertia: none is missing.")
+    else:
+        print("They were given: that none is missing is their giver's word.")
+
+
+def _known(value: float, form: str) -> str:
+    """Return a number, or a dash for one that nothing says."""
+    return "-" if np.isnan(value) else f"{value:{form}}"
 
 
 def criteria(*, as_json: bool = False) -> None:

@@ -84,8 +84,15 @@ def case_control(path: Path) -> dict[str, int]:
     return found
 
 
-def cards_of(path: Path) -> Iterator[Card]:
+def cards_of(path: Path, files: dict[Path, None] | None = None) -> Iterator[Card]:
     """Give the cards of bulk data, those of included files where they are included.
+
+    Parameters
+    ----------
+    path : Path
+        The file that includes the others.
+    files : dict, optional
+        Takes every file that is read.
 
     Yields
     ------
@@ -98,7 +105,7 @@ def cards_of(path: Path) -> Iterator[Card]:
         A file that cannot be read, or files that include each other.
     """
     open_card: list[tuple[list[str], str]] = []
-    for place, line in _lines(path, path.parent.resolve(), 0):
+    for place, line in _lines(path, path.parent.resolve(), {} if files is None else files):
         fields, continues = _fields(line)
         if continues:
             if not open_card:
@@ -124,10 +131,13 @@ def _text(path: Path) -> str:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
 
 
-def _lines(path: Path, folder: Path, depth: int) -> Iterator[tuple[str, str]]:
+def _lines(
+    path: Path, folder: Path, files: dict[Path, None], depth: int = 0
+) -> Iterator[tuple[str, str]]:
     """Give lines of bulk data with their place, without comments."""
     if depth > _DEEPEST:
         raise InputError(f"{path}: files include each other, or {_DEEPEST} deep")
+    files[path] = None
     lines = _text(path).splitlines()
     starts = [i for i, line in enumerate(lines) if re.match(r"\s*BEGIN\s+BULK", line, re.I)]
     for number, line in enumerate(lines[starts[0] + 1 if starts else 0 :], (starts or [-1])[0] + 2):
@@ -142,7 +152,7 @@ def _lines(path: Path, folder: Path, depth: int) -> Iterator[tuple[str, str]]:
                 raise InputError(
                     f"{path.name}, line {number}: {named[1]!r} is not beside the model"
                 )
-            yield from _lines(inner, folder, depth + 1)
+            yield from _lines(inner, folder, files, depth + 1)
             continue
         yield f"{path.name}, line {number}", plain
 

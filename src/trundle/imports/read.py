@@ -2,30 +2,58 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
-from trundle.errors import InputError
-from trundle.imports.model_format import ReadModel, all_formats
+from trundle.errors import InputError, Problem
+from trundle.imports.model_format import Asked, ModelFormat, ReadModel, all_formats
+from trundle.imports.stand_on import surfaces_of
+from trundle.structure import Floor
 
 __all__ = ["read_model"]
 
-_FIRST = 4096  # bytes by which formats are told
+_FIRST = 65536  # bytes by which formats are told
 _LARGEST = 2_000_000_000  # bytes
 
 
-def read_model(path: Path) -> ReadModel:
-    """Read a structural model.
+def read_model(path: Path, asked: Asked | None = None) -> ReadModel:
+    """Read a structural model into SI.
 
     Parameters
     ----------
     path : Path
         A file of one of the formats that are known.
+    asked : Asked, optional
+        Its units, what is stood on, and what else its file does not say.
 
     Raises
     ------
     InputError
-        A file that cannot be read, or that is of no format that is known.
+        A file that cannot be read, that is of no format that is known, or whose units are not
+        those that are asked for.
     """
+    asked = asked or Asked()
+    read = _format_of(path, asked.kind).read(path, asked)
+    if read.structure is None:
+        return read
+    if not isinstance(read.structure, Floor):
+        return read
+    try:
+        if not read.structure.n_dofs:
+            raise InputError("nothing of it can move: no node is free")
+        floor = read.structure
+        floor = replace(floor, decks=surfaces_of(floor.nodes, floor.elements, asked.surfaces))
+        floor.matrices()  # elements without area or warped are told here
+    except InputError as error:
+        return replace(read, structure=None, problems=(_refused(path, error),))
+    return replace(read, structure=floor)
+
+
+def _refused(path: Path, error: InputError) -> Problem:
+    return Problem(place=path.name, value="the model", rule=str(error), remedy="correct the model")
+
+
+def _format_of(path: Path, kind: str | None) -> ModelFormat:
     try:
         if not path.is_file():
             raise InputError(f"{path}: no such file; name the file of a structural model")
@@ -35,8 +63,12 @@ def read_model(path: Path) -> ReadModel:
             first = opened.read(_FIRST)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    if b"\0" in first:
+        raise InputError(f"{path}: is binary; models are read as text: export it as text")
+    if kind is not None:
+        return next(one for one in all_formats() if one.kind == kind)
     found = next((one for one in all_formats() if one.claims(first)), None)
     if found is None:
         names = ", ".join(f"{one.name} ({', '.join(one.suffixes)})" for one in all_formats())
         raise InputError(f"{path}: of no format that is known: {names}")
-    return found.read(path)
+    return found

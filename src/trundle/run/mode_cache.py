@@ -52,7 +52,7 @@ def modes_of(floor: Structure, *, f_max: float, progress: Progress | None = None
     progress : callable, optional
         Told the share of modes found, where they must be found.
     """
-    file = _file(floor, f_max)
+    file = _file(floor, f_max) if floor.has_matrices else None
     kept = None if file is None else _read(file, floor)
     if kept is not None and kept.f_max == f_max:
         return kept
@@ -64,6 +64,8 @@ def modes_of(floor: Structure, *, f_max: float, progress: Progress | None = None
 
 def has_modes(floor: Structure, f_max: float) -> bool:
     """Return whether modes are kept; whether they can be believed is seen when they are read."""
+    if not floor.has_matrices:
+        return True  # given, not computed
     file = _file(floor, f_max)
     return file is not None and file.is_file()
 

@@ -7,6 +7,7 @@ from trundle.structure.elements import (
     BeamGroup,
     ContactShape,
     Elements,
+    FaceGroup,
     Hat,
     Hermite,
     PointMasses,
@@ -17,7 +18,9 @@ from trundle.structure.elements import (
 )
 from trundle.structure.floor import DOF_NAMES, Floor
 from trundle.structure.links import RigidLinks
-from trundle.structure.model import MirrorPlane, Structure, node_motion
+from trundle.structure.matrix_model import MatrixModel
+from trundle.structure.modal_model import ModalModel
+from trundle.structure.model import MirrorPlane, Structure, can_move, node_motion
 from trundle.structure.places import Axis, Frame, Spot, Spots
 from trundle.structure.plan import FloorPlan, Rectangle, build_floor, mesh_lines
 from trundle.structure.plates import OrthotropicSection
@@ -67,13 +70,16 @@ __all__ = [
     "ContactShape",
     "Edge",
     "Elements",
+    "FaceGroup",
     "Floor",
     "FloorPlan",
     "Frame",
     "Hat",
     "Hermite",
     "Material",
+    "MatrixModel",
     "MirrorPlane",
+    "ModalModel",
     "OrthotropicSection",
     "PlateSection",
     "PointMasses",
@@ -95,6 +101,7 @@ __all__ = [
     "build_floor",
     "building_mesh_size",
     "building_resolution",
+    "can_move",
     "composite_deck",
     "hollow_core_slab",
     "i_section",

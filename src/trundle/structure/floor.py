@@ -200,6 +200,11 @@ class Floor:
         """Return what solves for static deflections: the factorised stiffness."""
         return factorise(self.stiffness)
 
+    @property
+    def has_matrices(self) -> bool:
+        """Whether its modes are computed, not given."""
+        return True
+
     def matrices(self) -> tuple[SparseMatrix, SparseMatrix]:
         """Return mass [kg] and stiffness [N/m] of the free dofs."""
         return self.mass, self.stiffness

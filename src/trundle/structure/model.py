@@ -17,7 +17,7 @@ from trundle.dynamics import Factor, Modes
 from trundle.structure.elements import Elements
 from trundle.structure.surface import Surface
 
-__all__ = ["MirrorPlane", "Structure", "node_motion"]
+__all__ = ["MirrorPlane", "Structure", "can_move", "node_motion"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -103,12 +103,23 @@ class Structure(Protocol):
         """All groups of elements, for pictures; none where only modes are known."""
         ...
 
-    def inertia_of(self, dof: int) -> Float[Array, " dofs"]:
-        """Return the forces of inertia of a unit acceleration of the whole in a dof [kg]."""
+    @property
+    def has_matrices(self) -> bool:
+        """Whether its modes are computed; False where they are given."""
         ...
 
-    def moving_mass(self, dof: int = 2) -> float:
-        """Return the mass that moves with a unit motion of the whole in a dof [kg]."""
+    def inertia_of(self, dof: int) -> Float[Array, " dofs"] | None:
+        """Return the forces of inertia of a unit acceleration of the whole in a dof [kg].
+
+        None where only modes are known.
+        """
+        ...
+
+    def moving_mass(self, dof: int = 2) -> float | None:
+        """Return the mass that moves with a unit motion of the whole in a dof [kg].
+
+        None where only modes are known.
+        """
         ...
 
     @property
@@ -155,6 +166,13 @@ class Structure(Protocol):
     def matrices(self) -> tuple[SparseMatrix, SparseMatrix]:
         """Return mass [kg] and stiffness [N/m]; refused by one that is known by its modes alone."""
         ...
+
+
+def can_move(structure: Structure, dof: int) -> bool:
+    """Return whether any node moves along a dof: of a test, whether it was measured there."""
+    if structure.expansion is not None:
+        return True
+    return bool((structure.dof_index[:, dof] >= 0).any())
 
 
 def node_motion(structure: Structure, dof: int) -> SparseMatrix:

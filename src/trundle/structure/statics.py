@@ -35,7 +35,8 @@ def self_weight_deflection(floor: Structure, *, gravity: float = 9.81) -> Float[
         Part of the floor can move without strain.
     """
     flexibility = floor.flexibility()
-    if flexibility is None:
+    inertia = floor.inertia_of(2)
+    if flexibility is None or inertia is None:
         raise InputError(f"{floor.name} is known by its modes: nothing says how it sinks")
-    u = flexibility.solve(-positive("gravity", gravity) * floor.inertia_of(2))
+    u = flexibility.solve(-positive("gravity", gravity) * inertia)
     return node_motion(floor, 2) @ u

@@ -43,6 +43,8 @@ class Surface:
         Its elements; of a group that lies in it in part, only that part is stood on.
     frame : Frame
         The plane, in which x and y are measured.
+    flat : float
+        By how much a node may lie off the plane [m]: what other programs round.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class Surface:
     nodes: Float[Array, "nodes 3"]
     groups: tuple[Standable, ...]
     frame: Frame
+    flat: float = _FLAT
 
     def __repr__(self) -> str:
         """Say in a line what it is."""
@@ -73,7 +76,7 @@ class Surface:
         found, at = [], 0
         for group in self.groups:
             corners = flat[group.connectivity]
-            inside = (np.abs(corners[..., 2]) < _FLAT).all(axis=1)
+            inside = (np.abs(corners[..., 2]) < self.flat).all(axis=1)
             part = _Part(
                 group=group,
                 first=at,

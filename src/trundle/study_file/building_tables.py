@@ -274,6 +274,7 @@ class DrawingSection(Section):
 class BuildingSection(Section):
     """A building of storeys."""
 
+    kind: Literal["storeys"] = "storeys"
     name: Line = "building"
     mesh_size: PositiveLength
     elements: Literal["quadrilaterals", "triangles"] = "quadrilaterals"

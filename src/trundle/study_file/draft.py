@@ -11,7 +11,7 @@ from trundle.errors import FitnessWarning, Problem
 from trundle.road import RoughnessBand
 from trundle.signals import Isolation
 from trundle.simulate import Source
-from trundle.structure import FloorPlan, Structure, Surface
+from trundle.structure import FloorPlan, Structure, Surface, can_move
 from trundle.structure.building import Building, Meshing
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Extent, extent_of
@@ -25,6 +25,7 @@ __all__ = [
     "is_off",
     "no_sway",
     "refer",
+    "still_axes",
     "surface_at",
     "undrawn",
     "unique",
@@ -206,13 +207,19 @@ def _no_storeys(place: str, on: str | None) -> list[Problem]:
 def undrawn(draft: Draft, kind: str) -> Iterator[Problem]:
     """Give routes or points that name a layer of a drawing where there is no building to draw."""
     for i, section in draft.file.lists.get(kind, []):
-        if section.drawn is not None and "building" not in draft.file.given:
+        if section.drawn is not None and draft.building is None and _has_no_drawing(draft):
             yield Problem(
                 place=f"{kind}[{i + 1}].drawn",
                 value=repr(section.drawn),
                 rule="a layer is one of [[building.drawing]], and this study has no building",
                 remedy="give path" if kind == "route" else "give at",
             )
+
+
+def _has_no_drawing(draft: Draft) -> bool:
+    """Return whether there is no building of storeys, sound or not."""
+    table = draft.file.tables.get("building")
+    return "building" not in draft.file.given or (table is not None and table.kind != "storeys")
 
 
 def is_off(extent: Extent, place: tuple[float, float]) -> bool:
@@ -226,6 +233,29 @@ def covered(extent: Extent) -> str:
     """Say where the floor is."""
     (x0, x1), (y0, y1) = extent
     return f"the floor covers x {x0:g} to {x1:g} m and y {y0:g} to {y1:g} m"
+
+
+def still_axes(draft: Draft, place: str, axes: Sequence[str]) -> Iterator[Problem]:
+    """Give axes along which nothing of a model moves, or along which its motion is not known.
+
+    Parameters
+    ----------
+    draft : Draft
+        With a model.
+    place : str
+        Where the axes stand.
+    axes : sequence of str
+        Those that are read.
+    """
+    model = draft.model
+    still = [] if model is None else [a for a in axes if not can_move(model, "xyz".index(a))]
+    if still:
+        yield Problem(
+            place=place,
+            value=", ".join(still),
+            rule="nothing of the model moves along it, or nobody says how",
+            remedy="give the motion of nodes along it, or leave the axis out",
+        )
 
 
 def no_sway(place: str, axes: Sequence[str]) -> Problem:

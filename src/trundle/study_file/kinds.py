@@ -22,12 +22,15 @@ class SectionKind:
         ``[name]``, ``[name.ANY]``, or ``[[name]]``.
     required : bool
         Whether a study needs at least one.
+    usual : str
+        Kind of a table that names none, where there are several.
     """
 
     name: str
     schema: Any
     form: Literal["table", "named", "list"]
     required: bool = False
+    usual: str = ""
 
     @property
     def header(self) -> str:

@@ -13,6 +13,7 @@ from trundle.errors import Problem, StudyError
 from trundle.study_file.alternatives import by_likeness
 from trundle.study_file.document import StudyFile
 from trundle.study_file.fields import Section
+from trundle.study_file.kinds import SectionKind
 from trundle.study_file.lines import parse
 from trundle.study_file.rules import rule_of
 from trundle.study_file.sections import KINDS
@@ -22,7 +23,7 @@ from trundle.vehicle import RETIRED, VEHICLES
 __all__ = ["read_study", "read_text"]
 
 _LARGEST = 1_000_000  # bytes; a study is a page or two of text
-_TABLES = {kind.name: kind.schema for kind in KINDS if kind.form == "table"}
+_TABLES = {kind.name: kind for kind in KINDS if kind.form == "table"}
 _NAMED_TABLES = {kind.name: kind.schema for kind in KINDS if kind.form == "named"}
 _LISTS = {kind.name: kind.schema for kind in KINDS if kind.form == "list"}
 _HEADERS = {kind.name: kind.header for kind in KINDS}
@@ -52,7 +53,7 @@ def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
     tables = {
         name: section
         for name, kind in _TABLES.items()
-        if name in data and (section := _section(kind, data[name], name, problems)) is not None
+        if name in data and (section := _table(kind, data[name], problems)) is not None
     }
     vehicles = _named(data, "vehicle", problems)
     lists = {name: _list(data, name, kind, problems) for name, kind in _LISTS.items()}
@@ -146,6 +147,13 @@ def _section(kind: Any, data: Any, place: str, problems: list[Problem]) -> Any:
             if not (e["type"] == "too_short" and e["loc"] in inner)
         ]
         return None
+
+
+def _table(kind: SectionKind, data: Any, problems: list[Problem]) -> Any:
+    """Return a table's section; one that names no kind is of the usual one."""
+    if kind.usual and isinstance(data, Mapping):
+        data = {"kind": kind.usual, **data}
+    return _section(kind.schema, data, kind.name, problems)
 
 
 def _named(data: Mapping[str, Any], name: str, problems: list[Problem]) -> dict[str, Any]:

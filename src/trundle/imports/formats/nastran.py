@@ -11,16 +11,18 @@ Reference: MSC Nastran 2021 Quick Reference Guide, bulk data entries.
 from __future__ import annotations
 
 import re
+from collections import Counter
 from pathlib import Path
 
 from trundle.errors import InputError, Problem
-from trundle.imports.model_format import ModelFormat, ReadModel
+from trundle.imports.model_format import Asked, ModelFormat, ReadModel
 from trundle.imports.nastran_cards import Card, cards_of, case_control
 from trundle.imports.nastran_deck import Deck
 from trundle.imports.nastran_grids import GRID_CARDS
 from trundle.imports.nastran_members import MEMBER_CARDS
 from trundle.imports.nastran_model import floor_of
 from trundle.imports.nastran_parts import PART_CARDS
+from trundle.imports.unit_system import agreed_units, in_si
 
 __all__ = ["FORMAT"]
 
@@ -39,46 +41,51 @@ _NOTHING_OF_THE_MODEL = frozenset(
 """Loads, what is asked for, heat and temperature, and points of a reduction, which hold nothing."""
 
 
-def read(path: Path) -> ReadModel:
+def read(path: Path, asked: Asked) -> ReadModel:
     """Read bulk data.
 
     Parameters
     ----------
     path : Path
-        A file with or without executive and case control; lengths in m, forces in N, masses in kg
-        (after WTMASS).
+        A file with or without executive and case control; masses after WTMASS.
+    asked : Asked
+        Cards to be passed over.
     """
-    deck, problems = Deck(), []
-    asked = case_control(path).get("SPC")
-    for card in cards_of(path):
+    deck, problems = Deck(), list[Problem]()
+    passed, files = Counter[str](), dict[Path, None]()
+    for card in cards_of(path, files):
+        if card.name in _NOTHING_OF_THE_MODEL or card.name in asked.ignore:
+            passed[card.name] += 1
+            continue
         problem = _taken(deck, card)
         if problem is not None:
             problems.append(problem)
-    if problems:
-        return ReadModel(structure=None, problems=tuple(problems))
-    try:
-        floor = floor_of(deck, asked, path.stem)
-        if not floor.n_dofs:
-            raise InputError("nothing of it can move: no grid is free")
-        floor.matrices()  # elements without area or warped are told here
-        return ReadModel(structure=floor)
-    except InputError as error:
-        problem = Problem(
-            place=path.name, value="the model", rule=str(error), remedy="correct the model"
-        )
-        return ReadModel(structure=None, problems=(problem,))
+    told = tuple(f"passed over: {name} ({times})" for name, times in sorted(passed.items()))
+    floor, units = None, None
+    if not problems:
+        try:
+            units, said = agreed_units(None, asked.units)
+            told = (*said, *told)
+            floor = in_si(floor_of(deck, case_control(path).get("SPC"), path.stem), units)
+        except InputError as error:
+            problem = Problem(
+                place=path.name, value="the model", rule=str(error), remedy="correct the model"
+            )
+            problems.append(problem)
+    return ReadModel(
+        structure=floor, problems=tuple(problems), units=units, told=told, files=tuple(files)
+    )
 
 
 def _taken(deck: Deck, card: Card) -> Problem | None:
     """Take a card into the deck; return why it cannot be."""
-    if card.name in _NOTHING_OF_THE_MODEL:
-        return None
     if card.name not in _CARDS:
         return Problem(
             place=card.place,
             value=card.name,
             rule="this card is not read, and nothing is left out in silence",
-            remedy=f"remove it if it is nothing of the model; read are {', '.join(_CARDS)}",
+            remedy="if it is nothing of the model, put it into ignore = [..]; read are "
+            + ", ".join(_CARDS),
         )
     try:
         _CARDS[card.name](deck, card)
@@ -90,6 +97,7 @@ def _taken(deck: Deck, card: Card) -> Problem | None:
 
 
 FORMAT = ModelFormat(
+    kind="nastran",
     name="Nastran bulk data",
     suffixes=(".bdf", ".dat", ".nas"),
     claims=lambda data: re.search(rb"^\s*(BEGIN\s+BULK|GRID[*, ])", data, re.I | re.M) is not None,

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from trundle._progress import Tell, silent
+from trundle.errors import InputError
 from trundle.report.canvas import Drawing, class_colours
 from trundle.report.figures import building, floor, map, response, road, vehicle
 from trundle.report.html import Picture, embedded, template
@@ -97,7 +98,7 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         provenance=result.provenance,
         frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],
         n_modes=0 if modes is None else modes.n_modes,
-        moving_mass=study.floor.moving_mass() / 1e3,
+        moving_mass=study.floor.moving_mass(),
         sag=_sag(study.floor),
         class_limits=_class_table(),
         gal=GAL,

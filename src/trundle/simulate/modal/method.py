@@ -183,11 +183,15 @@ class FloorInModes:
         """Return what a result must say of step and modes."""
         found = self.integration.doubts()
         if self.integration.residual and not self.residual:
+            found = tuple(one for one in found if one.subject != "modal truncation")
             found += (
                 FitnessWarning(
-                    subject="static rest",
-                    message=f"{self.floor.name} is known by its modes alone: what lies above "
-                    f"{self.modes.f_max:g} Hz does not even answer statically",
+                    subject="modal truncation",
+                    message=f"{self.floor.name} is known by its {self.modes.n_modes} modes below "
+                    f"{self.modes.f_max:g} Hz alone: what lies above does not answer, not even "
+                    "statically (the floor sinks less under a wheel, and close to a route levels "
+                    "may be too low), and that no mode below is missing is their giver's word; "
+                    f"bands that reach above {self.integration.f_resolved:.3g} Hz are not assessed",
                 ),
             )
         if isinstance(self.damping, ByMaterial):

@@ -63,8 +63,9 @@ class StaticFlexibility:
 
     def cover(self, dofs: Int[Array, " dofs"]) -> None:
         """Solve for all dofs of some routes, rising, that several layouts will ask about."""
-        self._dofs = dofs
-        self._block = self._between(self._dofs, self._dofs)
+        if self.known:
+            self._dofs = dofs
+            self._block = self._between(self._dofs, self._dofs)
 
     def block(self, dofs: Int[Array, " dofs"]) -> Float[Array, "dofs dofs"]:
         """Return the part of K^-1 between some dofs, rising [m/N]."""

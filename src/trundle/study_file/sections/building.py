@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
+from typing import Annotated, Any, TypeAlias
 
 import numpy as np
+from pydantic import Field
 
 from trundle.errors import InputError, Problem
 from trundle.structure import Floor
@@ -16,6 +17,13 @@ from trundle.structure.mesh import Refinement
 from trundle.study_file.building_drawing import Drawn, drawn_of, line_on, place_on
 from trundle.study_file.building_maker import Maker
 from trundle.study_file.building_makes import materials_of
+from trundle.study_file.building_models import (
+    GmshSection,
+    MatricesSection,
+    ModelSection,
+    ModesSection,
+    with_model,
+)
 from trundle.study_file.building_parts import Origins, parts_of
 from trundle.study_file.building_tables import BuildingSection, RefineSection
 from trundle.study_file.draft import Draft
@@ -25,7 +33,12 @@ __all__ = ["BUILDING", "build", "fields"]
 
 _MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
 
-BUILDING = SectionKind(name="building", schema=BuildingSection, form="table")
+AnyBuilding: TypeAlias = Annotated[
+    BuildingSection | ModelSection | GmshSection | MatricesSection | ModesSection,
+    Field(discriminator="kind"),
+]
+
+BUILDING = SectionKind(name="building", schema=AnyBuilding, form="table", usual="storeys")
 
 
 def build(draft: Draft) -> tuple[Draft, list[Problem]]:
@@ -33,6 +46,8 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     section = draft.file.tables.get("building")
     if section is None:
         return draft, []
+    if not isinstance(section, BuildingSection):
+        return with_model(draft, section)
     asked = (one for kind in ("route", "point") for one in draft.file.items(kind))
     used = {one.drawn for one in asked if one.drawn is not None}
     drawn, found = drawn_of(section, draft.folder, draft.files, used)

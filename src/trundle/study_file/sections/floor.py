@@ -20,6 +20,7 @@ from trundle.structure import (
     reference_plan,
 )
 from trundle.study_file.attempt import attempted
+from trundle.study_file.building_models import model_taken
 from trundle.study_file.draft import Draft
 from trundle.study_file.fields import (
     AreaDensity,
@@ -150,14 +151,9 @@ def _with_model(draft: Draft, section: ModelFloorSection) -> tuple[Draft, list[P
     read, found = attempted(
         "floor.file", lambda: read_model(path), "docs/models.md says what is read"
     )
-    model = None if read is None else read.structure
-    found += () if read is None else read.problems
-    if model is None:
-        return draft, found
-    size, mistakes = attempted("floor.file", lambda: model.surface().element_size)
-    found += mistakes
-    draft = replace(draft, read={**draft.read, section.file: path.read_bytes()})
-    return replace(draft, model=model, mesh_size=size or 1.0), found
+    if read is None or read.structure is None:
+        return draft, found + ([] if read is None else list(read.problems))
+    return model_taken(draft, section.file, path, read), found
 
 
 def fields(draft: Draft) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from trundle.structure import Axis, FloorPlan, Surface, mesh_lines
 from trundle.study.map_plan import MapGrid, MapPlan, map_places
 from trundle.study.model import Extent
 from trundle.study.plans import Assessment, Drive, MethodPlan
-from trundle.study_file.draft import Draft, no_sway, surface_at
+from trundle.study_file.draft import Draft, no_sway, still_axes, surface_at
 from trundle.study_file.fields import (
     Flag,
     Name,
@@ -88,9 +88,9 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         n_roads=max(1, len(file.items("road"))),
         known=() if draft.model is None else tuple(draft.model.surfaces),
         surfaces=surfaces,
-        sways=draft.building is not None,
+        sways="building" in file.given,
     )
-    found = list(_problems(checked))
+    found = [*still_axes(draft, "map.axes", section.axes), *_problems(checked)]
     return (draft if found else replace(draft, map=_plan(checked))), found
 
 

@@ -12,7 +12,7 @@ from trundle.road import RoughnessBand
 from trundle.route import entry_named
 from trundle.simulate import Coupled, Decoupled, Integration, Modal, Newmark
 from trundle.simulate.step_limits import longest_step, step_problem
-from trundle.structure import Hat, Hermite
+from trundle.structure import Hat, Hermite, ModalModel
 from trundle.structure.elements import Damped
 from trundle.study.plans import Drive, MethodPlan
 from trundle.study_file.attempt import attempt
@@ -66,7 +66,8 @@ METHOD = SectionKind(name="method", schema=MethodSection, form="list", required=
 
 def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     """Return the draft with its methods."""
-    methods, found = methods_of(draft.file, draft.mesh_size, draft.band)
+    reach = draft.model.reach if isinstance(draft.model, ModalModel) else None
+    methods, found = methods_of(draft.file, draft.mesh_size, draft.band, reach)
     return replace(draft, methods=methods), found
 
 
@@ -85,7 +86,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
 
 
 def methods_of(
-    file: StudyFile, mesh_size: float, band: RoughnessBand | None
+    file: StudyFile, mesh_size: float, band: RoughnessBand | None, reach: float | None = None
 ) -> tuple[dict[str, MethodPlan], list[Problem]]:
     """Return the methods of a study by name, and what is wrong with them.
 
@@ -97,12 +98,14 @@ def methods_of(
         Of the floor [m]: the length of a ramp unless another is given.
     band : RoughnessBand, optional
         The waves of the study; methods may name their own.
+    reach : float, optional
+        To which frequency a structure is known that is known by its modes alone [Hz].
     """
     methods: dict[str, MethodPlan] = {}
     problems: list[Problem] = []
     for i, section in file.lists.get("method", []):
         place = f"method[{i + 1}]"
-        damping, integration = _damping(section, place), _integration(section, place)
+        damping, integration = _damping(section, place), _integration(section, place, reach)
         own = None if band is None else _own_band(section, place, band)
         found = [one for one in (damping, integration, own) if isinstance(one, Problem)]
         known = None if isinstance(damping, Problem) else damping
@@ -182,17 +185,32 @@ def _without_damping(draft: Draft) -> Iterator[Problem]:
             )
 
 
-def _integration(section: MethodSection, place: str) -> Integration | Problem:
+def _integration(section: MethodSection, place: str, reach: float | None) -> Integration | Problem:
+    if reach is not None and section.integration == "newmark":
+        return Problem(
+            place=f"{place}.integration",
+            value="'newmark'",
+            rule="what is known by its modes has no matrices to integrate",
+            remedy='write integration = "modal"',
+        )
+    if reach is not None and section.f_max is not None and section.f_max > reach * (1.0 + 1e-6):
+        return Problem(
+            place=f"{place}.f_max",
+            value=f"{section.f_max:g} Hz",
+            rule=f"the modes that are given reach {reach:.6g} Hz",
+            remedy="remove f_max, or give modes that reach further",
+        )
     if section.integration == "newmark":
         return _step_by_step(section, place)
-    if section.f_max is None:
+    f_max = section.f_max if reach is None else min(section.f_max or reach, reach)
+    if f_max is None:
         return Problem(
             place=f"{place}.f_max",
             value="nothing",
             rule="modal superposition needs the frequency up to which modes are kept",
             remedy='add f_max = "112 Hz": 1.25 times the end of the 80 Hz band',
         )
-    return Modal(f_max=section.f_max, dt=section.dt, single=section.precision == "single")
+    return Modal(f_max=f_max, dt=section.dt, single=section.precision == "single")
 
 
 def _step_by_step(section: MethodSection, place: str) -> Newmark | Problem:

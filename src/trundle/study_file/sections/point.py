@@ -14,7 +14,16 @@ from trundle.errors import InputError, Problem
 from trundle.signals import Isolation, Isolator, TransmissibilityTable
 from trundle.structure import Axis, Spot, Surface
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, covered, is_off, no_sway, surface_at, undrawn, unique
+from trundle.study_file.draft import (
+    Draft,
+    covered,
+    is_off,
+    no_sway,
+    still_axes,
+    surface_at,
+    undrawn,
+    unique,
+)
 from trundle.study_file.fields import (
     Factor,
     Frequency,
@@ -127,6 +136,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
 
 def _level(draft: Draft, place: str, section: PointSection) -> Iterator[Problem]:
     """Give points that are read along level axes where that says nothing."""
+    yield from still_axes(draft, place, section.axes)
     if set(section.axes) == {"z"}:
         return
     if draft.building is None and "building" not in draft.file.given:

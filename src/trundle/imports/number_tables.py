@@ -1,0 +1,231 @@
+"""Read tables with a heading, as spreadsheets and other programs write them.
+
+pandas parses them; this is the only module that knows it.
+"""
+
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
+# pyright: reportUnknownArgumentType=false
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from trundle._typing import Array
+from trundle.errors import InputError
+
+__all__ = ["NumberTable", "read_table"]
+
+_LARGEST = 1_000_000_000  # bytes
+_UNIT = re.compile(r"\s*[\[(][^\[\]()]*[\])]\s*$")  # of a heading: "f [Hz]"
+_RAGGED = re.compile(r"Expected (\d+) fields in line (\d+), saw (\d+)")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NumberTable:
+    """Hold a table.
+
+    Attributes
+    ----------
+    name : str
+        Of its file, for messages.
+    frame : pandas.DataFrame
+        All cells as text, columns by heading: small letters, without units.
+    lines : ndarray of int, shape (n_rows,)
+        Line of each row in the file.
+    """
+
+    name: str
+    frame: Any
+    lines: Int[Array, " rows"]
+
+    def __len__(self) -> int:
+        """Return how many rows there are."""
+        return len(self.lines)
+
+    @property
+    def headings(self) -> tuple[str, ...]:
+        """What its columns are called."""
+        return tuple(map(str, self.frame.columns))
+
+    def find(self, words: Sequence[str]) -> Float[Array, " rows"] | None:
+        """Return the column that is called by one of some words; None if none is.
+
+        Empty cells are NaN.
+
+        Raises
+        ------
+        InputError
+            A cell that is no number, or none that is finite.
+        """
+        word = next((one for one in words if one in self.headings), None)
+        if word is None:
+            return None
+        import pandas as pd  # noqa: PLC0415 - a quarter of a second, for tables alone
+
+        cells = self.frame[word]
+        numbers = np.asarray(pd.to_numeric(cells, errors="coerce"), dtype=float)
+        wrong = np.flatnonzero(~np.isfinite(numbers) & cells.notna().to_numpy())
+        if wrong.size:
+            shown = str(cells.iloc[wrong[0]])[:40]
+            raise InputError(
+                f"{self.name}, line {self.lines[wrong[0]]}: {word} must be a number; got {shown!r}"
+            )
+        return numbers
+
+    def need(self, words: Sequence[str]) -> Float[Array, " rows"]:
+        """Return a column that must be there, and whole.
+
+        Raises
+        ------
+        InputError
+            It is missing, or a cell of it is empty.
+        """
+        found = self.find(words)
+        if found is None:
+            raise InputError(
+                f"{self.name}: no column {words[0]!r}; there are: {', '.join(self.headings)}"
+            )
+        empty = np.flatnonzero(np.isnan(found))
+        if empty.size:
+            raise InputError(f"{self.name}, line {self.lines[empty[0]]}: {words[0]} is empty")
+        return found
+
+    def labels(self, words: Sequence[str]) -> Array:
+        """Return a column of names or numbers as text, that must be there and whole."""
+        word = next((one for one in words if one in self.headings), None)
+        if word is None:
+            raise InputError(
+                f"{self.name}: no column {words[0]!r}; there are: {', '.join(self.headings)}"
+            )
+        cells = self.frame[word]
+        empty = np.flatnonzero(cells.isna().to_numpy())
+        if empty.size:
+            raise InputError(f"{self.name}, line {self.lines[empty[0]]}: {words[0]} is empty")
+        return np.array(cells.tolist(), dtype=str)
+
+    def texts(self, words: Sequence[str]) -> Array | None:
+        """Return a column as text, empty cells empty; None if there is none."""
+        word = next((one for one in words if one in self.headings), None)
+        return None if word is None else np.array(self.frame[word].fillna("").tolist(), dtype=str)
+
+    def whole(self, words: Sequence[str]) -> Int[Array, " rows"]:
+        """Return a column of whole numbers that must be there."""
+        found = self.need(words)
+        wrong = np.flatnonzero(found != np.round(found))
+        if wrong.size:
+            raise InputError(
+                f"{self.name}, line {self.lines[wrong[0]]}: {words[0]} must be a whole number; got "
+                f"{found[wrong[0]]:g}"
+            )
+        return found.astype(np.int64)
+
+
+def read_table(path: Path) -> NumberTable:
+    """Read a table: commas, semicolons, tabs or blanks between columns, a heading above them.
+
+    Parameters
+    ----------
+    path : Path
+        A text file; lines before the heading that are a title, a line of units below it, and lines
+        that begin with # are passed over.
+
+    Raises
+    ------
+    InputError
+        No such file, no heading, rows of another length.
+    """
+    text = _text(path)
+    lines = text.splitlines()
+    at = next((i for i, line in enumerate(lines) if _is_heading(line)), None)
+    if at is None:
+        raise InputError(f"{path.name}: holds no table: a heading, and numbers below it")
+    heading = lines[at]
+    mark = next((one for one in ("\t", ";", ",") if one in heading), r"\s+")
+    below = [(i, line) for i, line in enumerate(lines[at + 1 :], at + 2) if _counts(line)]
+    comma = mark == ";" and "." not in "".join(line for _, line in below[:50])
+    frame = _frame(path.name, heading, [line for _, line in below], at + 1, mark, comma=comma)
+    names = [_plain(str(one)) for one in frame.columns]
+    if len({_plain(one) for one in re.split(mark, heading.replace('"', ""))}) < len(names):
+        raise InputError(f"{path.name}, line {at + 1}: two columns have one heading")
+    frame.columns = names
+    numbers = np.array([i for i, _ in below], dtype=np.int64)[: len(frame)]
+    if len(frame) and _says_units(frame.iloc[0]):
+        frame, numbers = frame.iloc[1:], numbers[1:]
+    if not len(frame):
+        raise InputError(f"{path.name}: has a heading, and no rows")
+    return NumberTable(name=path.name, frame=frame, lines=numbers)
+
+
+def _frame(
+    name: str, heading: str, rows: Sequence[str], line: int, mark: str, *, comma: bool
+) -> Any:  # noqa: ANN401 - pandas's
+    import io  # noqa: PLC0415 - with pandas
+
+    import pandas as pd  # noqa: PLC0415 - a quarter of a second, for tables alone
+
+    try:
+        frame = pd.read_csv(
+            io.StringIO("\n".join([heading, *rows])), sep=mark, dtype=str, skipinitialspace=True,
+            index_col=False, keep_default_na=False, na_values=[""], quotechar='"',
+        )  # fmt: skip
+    except pd.errors.ParserError as error:
+        found = _RAGGED.search(str(error))
+        where = f", line {line + int(found[2]) - 1}" if found else ""
+        what = f"has {found[3]} columns, and the heading {found[1]}" if found else "is no table"
+        raise InputError(f"{name}{where}: {what}") from None
+    except (pd.errors.EmptyDataError, ValueError):
+        raise InputError(f"{name}: is no table") from None
+    for column in frame.columns:
+        cells = frame[column].str.strip()
+        frame[column] = cells.str.replace(",", ".", regex=False) if comma else cells
+    return frame
+
+
+def _counts(line: str) -> bool:
+    return bool(line.strip(" ,;\t")) and not line.lstrip().startswith(("#", "!", "$"))
+
+
+def _is_heading(line: str) -> bool:
+    """Return whether a line names two columns or more: titles and comments do not."""
+    words = [one for one in re.split(r"[\t;,]|\s+", line.strip()) if one]
+    named = len(words) > 1 and not line.upper().startswith("TABLE:") and _counts(line)
+    return named and not any(_is_number(one) for one in words[:1])
+
+
+def _says_units(row: Any) -> bool:  # noqa: ANN401 - a row of pandas's
+    """Return whether a row has no number in it: units below a heading."""
+    return not any(isinstance(cell, str) and _is_number(cell) for cell in row)
+
+
+def _text(path: Path) -> str:
+    try:
+        if not path.is_file():
+            raise InputError(f"{path}: no such file")
+        if path.stat().st_size > _LARGEST:
+            raise InputError(f"{path}: a table may have {_LARGEST / 1e9:g} GB")
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path.name}: byte {error.start} is not UTF-8 text") from None
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read ({error.strerror})") from None
+    if "\0" in text:
+        raise InputError(f"{path.name}: is binary; give a table as text")
+    return text
+
+
+def _plain(cell: str) -> str:
+    return _UNIT.sub("", cell).strip().lower().replace(" ", "_")
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

@@ -23,7 +23,7 @@ from trundle.structure import (
     SpringGroup,
     TriangleGroup,
 )
-from trundle.structure.elements import Elements, ReleasedBeams
+from trundle.structure.elements import Elements, NodeInertia, ReleasedBeams
 from trundle.units import to_si
 
 __all__ = ["SI", "Units", "agreed_units", "in_si", "units_of"]
@@ -175,6 +175,9 @@ def in_si(floor: Floor, units: Units) -> Floor:
 
 
 def _any(group: Elements, units: Units) -> Any:  # noqa: ANN401 - of the same kind
+    if isinstance(group, NodeInertia):
+        by_dof = [units.mass] * 3 + [units.mass * units.length**2] * 3
+        return replace(group, inertia=group.inertia * by_dof)
     return _spring(group, units) if isinstance(group, SpringGroup) else _scaled(group, units)
 
 

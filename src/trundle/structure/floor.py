@@ -21,7 +21,7 @@ from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Damped, Elements
 from trundle.structure.elements.quad_shell import ShellGroup
 from trundle.structure.elements.spring import SpringGroup
-from trundle.structure.links import RigidLinks, expansion_of, follows, own_motion
+from trundle.structure.links import RigidLinks, expansion_of, leaders_of, own_motion
 from trundle.structure.model import MirrorPlane
 from trundle.structure.surface import Surface, check_names, found_surface, named_surface
 
@@ -92,7 +92,7 @@ class Floor:
         for group in self.elements:
             _check_numbers(group, len(nodes))
         check_names(self.decks)
-        follows(self.links, len(nodes))
+        leaders_of(self.links, len(nodes))
 
     @property
     def elements(self) -> tuple[Elements, ...]:
@@ -136,8 +136,8 @@ class Floor:
         return expansion_of(self.nodes, self._leader, self.dof_index, self.fixed, self.angles)
 
     @cached_property
-    def _leader(self) -> Int[Array, " nodes"]:
-        return follows(self.links, len(self.nodes))
+    def _leader(self) -> Int[Array, "nodes 6"]:
+        return leaders_of(self.links, len(self.nodes))
 
     @cached_property
     def _dof_index(self) -> Int[Array, "nodes 6"]:

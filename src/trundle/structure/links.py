@@ -1,14 +1,16 @@
-"""Let nodes follow another one as a rigid body does: a column's head under its slab.
+"""Let nodes follow another one as a rigid body does: a column's head, a floor's diaphragm.
 
 A node that follows has no motion of its own: ``u = u_0 + theta_0 x r``, ``theta = theta_0``, with r
 from the node that leads. Its dofs are taken out of the equations exactly, and what acts on it acts
-on the one that leads.
+on the one that leads. Where a node follows in some dofs alone, as the nodes of a diaphragm do in
+its plane, the others stay its own. One that follows in all may follow one that itself follows in
+some; there are no longer chains.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -18,7 +20,7 @@ from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array, SparseMatrix
 from trundle.errors import InputError
 
-__all__ = ["RigidLinks", "expansion_of", "follows", "own_motion"]
+__all__ = ["RigidLinks", "expansion_of", "leaders_of", "own_motion"]
 
 _MOVED = 1e-9  # by a unit motion of the node that is followed
 
@@ -30,45 +32,61 @@ class RigidLinks:
     Attributes
     ----------
     leads, follows : ndarray of int, shape (n_links,)
-        Node numbers; a node may lead many, and follows one at most.
+        Node numbers; a node may lead many, and follows one at most in each dof.
+    dofs : ndarray of bool, shape (6,)
+        In which dofs they follow; all, unless given.
     """
 
     leads: Int[Array, " links"]
     follows: Int[Array, " links"]
+    dofs: Bool[Array, " 6"] = field(default_factory=lambda: np.ones(6, dtype=bool))
 
     def __post_init__(self) -> None:
-        """Check that nothing follows twice, or leads what it follows."""
+        """Check that each has its own leader."""
         leads = frozen_array("leads", self.leads, shape=(None,), dtype=np.intp)
         follows = frozen_array("follows", self.follows, shape=(len(leads),), dtype=np.intp)
-        set_frozen(self, leads=leads, follows=follows)
+        dofs = frozen_array("dofs", self.dofs, shape=(6,), dtype=np.bool_)
+        set_frozen(self, leads=leads, follows=follows, dofs=dofs)
 
 
-def follows(links: Sequence[RigidLinks], n_nodes: int) -> Int[Array, " nodes"]:
-    """Return the node that each follows, -1 for those that move by themselves.
+def leaders_of(links: Sequence[RigidLinks], n_nodes: int) -> Int[Array, "nodes 6"]:
+    """Return the node that each follows in each dof, -1 where it moves by itself.
 
     Raises
     ------
     InputError
-        A node number that does not exist, one that follows twice, or leads though it follows.
+        A node number that does not exist, one that follows twice, or a longer chain of nodes that
+        follow each other.
     """
-    leader = np.full(n_nodes, -1, dtype=np.intp)
+    leader = np.full((n_nodes, 6), -1, dtype=np.intp)
     for group in links:
         both = np.concatenate([group.leads, group.follows])
         if both.size and (both.min() < 0 or both.max() >= n_nodes):
             raise InputError(f"rigid links: node numbers must be 0 to {n_nodes - 1}")
-        taken = group.follows[(leader[group.follows] >= 0)]
+        taken = (leader[group.follows][:, group.dofs] >= 0).any()
         repeated = len(np.unique(group.follows)) < len(group.follows)
-        if taken.size or repeated:
+        if taken or repeated:
             raise InputError("rigid links: a node follows two others")
-        leader[group.follows] = group.leads
-    if np.any(leader[leader[leader >= 0]] >= 0):
+        leader[np.ix_(group.follows, group.dofs)] = group.leads[:, None]
+    wholly, partly = _kinds(leader)
+    if np.any((wholly | partly)[leader[partly][leader[partly] >= 0]]) or np.any(
+        wholly[leader[wholly]]
+    ):
         raise InputError("rigid links: a node leads others and follows one itself")
+    if np.any(leader[wholly] != leader[wholly][:, :1]):
+        raise InputError("rigid links: a node follows two others")
     return leader
+
+
+def _kinds(leader: Array) -> tuple[Array, Array]:
+    """Return which nodes follow in all dofs, and which in some."""
+    wholly = np.asarray(np.all(leader >= 0, axis=1))
+    return wholly, np.asarray(np.any(leader >= 0, axis=1)) & ~wholly
 
 
 def expansion_of(
     nodes: Float[Array, "nodes 3"],
-    leader: Int[Array, " nodes"],
+    leader: Int[Array, "nodes 6"],
     index: Int[Array, "nodes 6"],
     fixed: Bool[Array, "nodes 6"],
     angles: Float[Array, "nodes 2"] | None = None,
@@ -79,8 +97,8 @@ def expansion_of(
     ----------
     nodes : ndarray of float, shape (n_nodes, 3)
         Coordinates [m].
-    leader : ndarray of int, shape (n_nodes,)
-        Whom each follows, -1 for nobody.
+    leader : ndarray of int, shape (n_nodes, 6)
+        Whom each follows in each dof, see `leaders_of`.
     index : ndarray of int, shape (n_nodes, 6)
         Row of each dof that moves by itself, -1 for others.
     fixed : ndarray of bool, shape (n_nodes, 6)
@@ -93,20 +111,27 @@ def expansion_of(
     InputError
         A node that follows is held in a dof in which the one that leads moves it.
     """
-    n_dofs = int(index.max()) + 1
-    own = own_motion(index, n_dofs, angles)
-    behind = np.flatnonzero(leader >= 0)
-    arm = nodes[behind] - nodes[leader[behind]]
+    own = own_motion(index, int(index.max()) + 1, angles)
+    wholly, partly = _kinds(leader)
+    base = own + _carried(nodes, leader, partly) @ own
+    carried = _carried(nodes, leader, wholly) @ base
+    _check_held(carried + (base - own), fixed, angles, leader)
+    return (base + carried).tocsr()
+
+
+def _carried(nodes: Array, leader: Array, some: Array) -> SparseMatrix:
+    """Return how some nodes move with those that they follow, (6 n_nodes, 6 n_nodes)."""
+    behind = np.flatnonzero(some)
+    followed = leader[behind].max(axis=1)
     rows, columns, values = [], [], []
-    for dof, on, factor in _rigid_motion(arm):
-        rows.append(6 * behind + dof)
-        columns.append(6 * leader[behind] + on)
-        values.append(factor)
+    for dof, on, factor in _rigid_motion(nodes[behind] - nodes[followed]):
+        there = leader[behind, dof] >= 0
+        rows.append(6 * behind[there] + dof)
+        columns.append(6 * followed[there] + on)
+        values.append(factor[there])
     at = (np.concatenate(rows), np.concatenate(columns))
     shape = (6 * len(nodes), 6 * len(nodes))
-    carried = sparse.coo_array((np.concatenate(values), at), shape=shape).tocsr() @ own
-    _check_held(carried, fixed, angles, leader)
-    return (own + carried).tocsr()
+    return sparse.coo_array((np.concatenate(values), at), shape=shape).tocsr()
 
 
 def own_motion(
@@ -147,7 +172,7 @@ def _check_held(carried: SparseMatrix, fixed: Array, angles: Array | None, leade
     """Refuse nodes that are moved by the one they follow in what supports hold."""
     numbers = np.arange(fixed.size).reshape(-1, 6)
     along_own = own_motion(numbers, fixed.size, angles).T @ carried
-    held = np.flatnonzero((fixed & (leader >= 0)[:, None]).ravel())
+    held = np.flatnonzero((fixed & (leader >= 0)).ravel())
     moved = abs(along_own[held]).max(axis=1).toarray().ravel() > _MOVED
     if np.any(moved):
         raise InputError(

@@ -28,7 +28,7 @@ from trundle.structure.building.parts import Building
 from trundle.structure.building.sheets import plane_of, sheets_of, ties_of
 from trundle.structure.elements import BeamGroup, Elements, ShellGroup, Standable, TriangleGroup
 from trundle.structure.floor import Floor
-from trundle.structure.links import follows
+from trundle.structure.links import leaders_of
 from trundle.structure.mechanisms import loose_parts
 from trundle.structure.mesh.mesher import mesh_sheets
 from trundle.structure.mesh.sheet import Refinement
@@ -119,7 +119,7 @@ def build_building(building: Building, meshing: Meshing) -> Floor:
 def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
     nodes = Nodes(building, mesh)
     links = heads(building, mesh, nodes)
-    leader = follows(links, len(mesh.nodes))
+    leader = leaders_of(links, len(mesh.nodes))[:, 0]
     block = np.where(leader < 0, np.arange(len(leader)), leader)
     laid = [
         *laid_beams(building, mesh, SlabThickness(building, mesh), block),

@@ -1,0 +1,165 @@
+"""SAP2000 text files (.s2k): frames, areas, springs, constraints and masses; other tables are told.
+
+Masses are lumped at joints, as SAP2000's are.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from trundle.errors import InputError, Problem
+from trundle.imports.model_format import Asked, ModelFormat, ReadModel
+from trundle.imports.sap_areas import areas_placed, plates_of
+from trundle.imports.sap_frames import beams_of, frames_placed
+from trundle.imports.sap_joints import constraints_of, joints_of, restraints_of, springs_of
+from trundle.imports.sap_makes import areas_of, frames_of, materials_of
+from trundle.imports.sap_masses import masses_of
+from trundle.imports.sap_tables import Table, read_tables
+from trundle.imports.unit_system import Units, agreed_units, in_si, units_of
+from trundle.structure import Floor
+from trundle.structure.elements import NodeInertia
+
+__all__ = ["FORMAT"]
+
+_READ = {
+    "PROGRAM CONTROL", "ACTIVE DEGREES OF FREEDOM", "JOINT COORDINATES",
+    "JOINT LOCAL AXES ASSIGNMENTS 1 - TYPICAL", "JOINT RESTRAINT ASSIGNMENTS",
+    "JOINT CONSTRAINT ASSIGNMENTS", "JOINT SPRING ASSIGNMENTS 1 - UNCOUPLED",
+    "JOINT ADDED MASS ASSIGNMENTS", "JOINT ADDED MASS ASSIGNMENTS 1 - BY MASS",
+    "CONNECTIVITY - FRAME", "FRAME SECTION ASSIGNMENTS", "FRAME SECTION PROPERTIES 01 - GENERAL",
+    "FRAME LOCAL AXES ASSIGNMENTS 1 - TYPICAL", "FRAME RELEASE ASSIGNMENTS 1 - GENERAL",
+    "FRAME OFFSET (LENGTH) ASSIGNMENTS", "FRAME OFFSET ALONG LENGTH ASSIGNMENTS",
+    "FRAME INSERTION POINT ASSIGNMENTS", "FRAME AUTO MESH ASSIGNMENTS",
+    "FRAME ADDED MASS ASSIGNMENTS", "CONNECTIVITY - AREA", "AREA SECTION ASSIGNMENTS",
+    "AREA SECTION PROPERTIES", "AREA AUTO MESH ASSIGNMENTS",
+    "AREA LOCAL AXES ASSIGNMENTS 1 - TYPICAL", "AREA ADDED MASS ASSIGNMENTS",
+    "MATERIAL PROPERTIES 01 - GENERAL", "MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES",
+    "MASS SOURCE", "MASSES 1 - MASS SOURCE",
+}  # fmt: skip
+
+_NOTHING = re.compile(
+    r"^(PROJECT INFORMATION|COORDINATE SYSTEMS|GRID LINES|GROUPS|DATABASE FORMAT|PREFERENCES|"
+    r"OVERWRITES|OPTIONS|LOAD|CASE|COMBINATION|FUNCTION|ANALYSIS|AUTO |BRIDGE|NAMED|TABLES|"
+    r"MATERIAL PROPERTIES 0[3-9]|REBAR|FRAME SECTION PROPERTIES (0[2-4]|1)|"
+    r"FRAME (OUTPUT|DESIGN|OVERWRITES|LOADS|BUCKLING|P-DELTA|TENSION|HINGE|STEEL|REBAR)|"
+    r"AREA (LOADS|SECTION PROPERTY DESIGN|DESIGN|OUTPUT|OVERWRITE|STIFFNESS)|JOINT (LOADS|PATTERN|"
+    r"ADDED PATTERN|PANEL ZONE DESIGN)|VIEW|PROGRAM|MISC|STEEL|CONCRETE|ALUMINUM|COLD|SECTION CUT|"
+    r"GENERALIZED|RESPONSE|TARGET|RUN|DEFAULT|MODAL|BASE REACTION|SELECTION)"
+)
+"""Tables that hold nothing of the structure: drawing, loads, cases, design, what is asked for."""
+
+
+def read(path: Path, asked: Asked) -> ReadModel:
+    """Read tables as text.
+
+    Parameters
+    ----------
+    path : Path
+        A file that SAP2000 has exported as text.
+    asked : Asked
+        Tables to be passed over.
+    """
+    try:
+        tables = read_tables(path)
+        unread = [t for name, t in tables.items() if not _is_read(name) and t.rows]
+        ignored = {name.upper() for name in asked.ignore}
+        wrong = [t for t in unread if not _NOTHING.match(t.name) and t.name not in ignored]
+        if wrong:
+            return ReadModel(
+                structure=None, problems=tuple(_not_read(one) for one in wrong), files=(path,)
+            )
+        units, said = agreed_units(_stated(tables), asked.units)
+        floor = in_si(_floor(tables, units, path.stem), units)
+    except InputError as error:
+        problem = Problem(
+            place=path.name, value="the model", rule=str(error), remedy="docs/models.md"
+        )
+        return ReadModel(structure=None, problems=(problem,), files=(path,))
+    told = [f"passed over: {table.name} ({len(table.rows)})" for table in unread]
+    told += [
+        f"not used of {name}: {', '.join(table.unused)}"
+        for name, table in tables.items()
+        if _is_read(name) and table.unused
+    ]
+    return ReadModel(structure=floor, units=units, told=(*said, *told), files=(path,))
+
+
+def _is_read(name: str) -> bool:
+    return name in _READ or name.startswith("CONSTRAINT DEFINITIONS")
+
+
+def _not_read(table: Table) -> Problem:
+    return Problem(
+        place=table.place,
+        value=table.name,
+        rule="this table is not read, and nothing is left out in silence",
+        remedy="if it is nothing of the structure, put it into ignore = [..]; docs/models.md lists "
+        "what is read",
+    )
+
+
+def _stated(tables: Mapping[str, Table]) -> Units | None:
+    control = tables.get("PROGRAM CONTROL")
+    if control is None or not control.rows:
+        return None
+    row = control.rows[0]
+    try:
+        return units_of(row.text("CurrUnits"))
+    except InputError as error:
+        raise InputError(f"{row.place}: {error}") from None
+
+
+def _floor(tables: Mapping[str, Table], units: Units, name: str) -> Floor:
+    """Return the structure, in the file's units."""
+
+    def table(title: str) -> Table:
+        """Return a table, without rows where it is not there."""
+        return tables.get(title) or Table(name=title, place=name)
+
+    if "JOINT COORDINATES" not in tables:
+        raise InputError("has no joints: export the model definition, all tables")
+    joints = joints_of(
+        tables["JOINT COORDINATES"], tables.get("JOINT LOCAL AXES ASSIGNMENTS 1 - TYPICAL")
+    )
+    materials = materials_of(
+        table("MATERIAL PROPERTIES 01 - GENERAL"),
+        table("MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES"),
+    )
+    areas = areas_placed(joints, tables, areas_of(table("AREA SECTION PROPERTIES"), materials))
+    makes = frames_of(table("FRAME SECTION PROPERTIES 01 - GENERAL"), materials)
+    parts = frames_placed(joints, tables, makes)
+    inertia = masses_of(joints, parts, areas, tables, 9.80665 / units.length)
+    fixed = restraints_of(
+        joints, tables.get("JOINT RESTRAINT ASSIGNMENTS"), tables.get("ACTIVE DEGREES OF FREEDOM")
+    )
+    shells, triangles = plates_of(areas)
+    beams, released = beams_of(parts)
+    heavy = np.flatnonzero(inertia.any(axis=1))
+    lumps = (
+        (NodeInertia(nodes=heavy, inertia=inertia[heavy], name="lumped mass"),)
+        if len(heavy)
+        else ()
+    )
+    return Floor(
+        nodes=np.array(joints.places),
+        fixed=fixed,
+        shells=tuple(shells),
+        beams=tuple(beams),
+        springs=tuple(springs_of(joints, tables.get("JOINT SPRING ASSIGNMENTS 1 - UNCOUPLED"))),
+        others=(*triangles, *released, *lumps),
+        links=constraints_of(joints, fixed, tables),
+        name=name,
+    )
+
+
+FORMAT = ModelFormat(
+    kind="sap2000",
+    name="SAP2000 text file",
+    suffixes=(".s2k", ".$2k"),
+    claims=lambda data: re.search(rb'^\s*TABLE:\s*"', data, re.I | re.M) is not None,
+    read=read,
+)

@@ -352,3 +352,18 @@ def test_what_a_plan_alone_can_do_is_refused(tmp_path):
     path.write_text(path.read_text() + '\n[map]\nplaces = "nodes"\n')
     with pytest.raises(StudyError, match="stand in no grid"):
         load_study(path)
+
+
+def test_a_deck_of_mistakes_ends_early(tmp_path):
+    """A hundred are told; the rest, however many, is not even read."""
+    path = tmp_path / "bad.bdf"
+    path.write_text("BEGIN BULK\nGRID,1,,0.,0.,0.\n" + "CHEXA,1,1,1\n" * 5000)
+    assert len(read_model(path).problems) == 100
+
+
+def test_an_included_file_that_is_missing_is_told_with_the_rest(tmp_path):
+    path = tmp_path / "deck.bdf"
+    path.write_text("BEGIN BULK\nINCLUDE 'geom.inc'\nGRID,1,,0.,0.,0.\nCHEXA,1,1,1\n")
+    told = [str(one) for one in read_model(path).problems]
+    assert "deck.bdf, line 2: got geom.inc" in told[0]
+    assert "CHEXA" in told[1]

@@ -5,6 +5,7 @@ import pytest
 
 from trundle.dynamics import natural_modes
 from trundle.imports import Asked, read_model, units_of
+from trundle.structure.elements import NodeInertia
 
 HEAD = 'File C:\\model.s2k was saved on 1/1/24 at 10:00:00\n \nTABLE:  "PROGRAM CONTROL"\n'
 
@@ -315,7 +316,8 @@ def test_insertion_points_lower_the_axis(tmp_path):
 
 def masses(tmp_path, text):
     floor = read(tmp_path, text).structure
-    return next(g for g in floor.elements if g.name == "lumped mass").inertia[:, 2].sum()
+    joints = [g.inertia[:, 2].sum() for g in floor.others if isinstance(g, NodeInertia)]
+    return sum(group.mass.sum() for group in floor.masses) + sum(joints)
 
 
 def test_mass_comes_from_where_the_model_says(tmp_path):

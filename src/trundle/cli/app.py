@@ -237,6 +237,31 @@ def new(
 
 
 @app.command()
+def model(
+    path: Annotated[
+        Path, typer.Argument(help="Model of another program, or a study.", metavar="MODEL|STUDY")
+    ],
+    *,
+    kind: Annotated[
+        str, typer.Option("--kind", help="nastran, sap2000 ...; else told by it.")
+    ] = "",
+    units: Annotated[str, typer.Option("--units", help="Of the file: 'kN, m', 'kip, in'.")] = "",
+    ignore: Annotated[
+        str, typer.Option("--ignore", help="Cards or tables that are nothing of it, by commas.")
+    ] = "",
+    as_json: options.Json = False,
+) -> None:
+    """Sum up a model: units, masses, centre, groups, what can be stood on, first frequencies.
+
+    Nothing of a file is left out in silence: what is not read is told with its line, and nothing is
+    computed; what was passed over stands in the summary.
+    """
+    from trundle.cli import model_command
+
+    model_command.model(path, kind=kind, units=units, ignore=ignore, as_json=as_json)
+
+
+@app.command()
 def modes(
     study: StudyPath,
     *,

@@ -76,7 +76,7 @@ def whole(text: str, default: int | None = None) -> int:
 def case_control(path: Path) -> dict[str, int]:
     """Return the numbers of sets that case control asks for, such as ``SPC = 3``."""
     found: dict[str, int] = {}
-    for line in _text(path).splitlines():
+    for line in _opened(path):
         if re.match(r"\s*BEGIN\s+BULK", line, re.IGNORECASE):
             return found
         if asked := re.match(r"\s*(SPC|MPC|METHOD)\s*=\s*(\d+)\s*$", line, re.IGNORECASE):
@@ -124,9 +124,11 @@ def _card(fields: list[str], place: str) -> Card:
     return Card(name=name, fields=tuple(fields[1:]), place=place)
 
 
-def _text(path: Path) -> str:
+def _opened(path: Path) -> Iterator[str]:
+    """Give the lines of a file, one after the other: a model may be larger than memory."""
     try:
-        return path.read_text(encoding="utf-8", errors="replace")
+        with path.open(encoding="utf-8", errors="replace") as opened:
+            yield from opened
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
 
@@ -138,11 +140,11 @@ def _lines(
     if depth > _DEEPEST:
         raise InputError(f"{path}: files include each other, or {_DEEPEST} deep")
     files[path] = None
-    lines = _text(path).splitlines()
-    starts = [i for i, line in enumerate(lines) if re.match(r"\s*BEGIN\s+BULK", line, re.I)]
-    for number, line in enumerate(lines[starts[0] + 1 if starts else 0 :], (starts or [-1])[0] + 2):
+    begins = re.compile(r"\s*BEGIN\s+BULK", re.IGNORECASE)
+    start = next((i for i, line in enumerate(_opened(path), 1) if begins.match(line)), 0)
+    for number, line in enumerate(_opened(path), 1):
         plain = line.partition("$")[0].rstrip()
-        if not plain.strip():
+        if number <= start or not plain.strip():
             continue
         if re.match(r"\s*ENDDATA", plain, re.IGNORECASE):
             return
@@ -152,6 +154,9 @@ def _lines(
                 raise InputError(
                     f"{path.name}, line {number}: {named[1]!r} is not beside the model"
                 )
+            if not inner.is_file():  # a card like any other, so that the rest is told too
+                yield f"{path.name}, line {number}", f"INCLUDE,{named[1].strip()}"
+                continue
             yield from _lines(inner, folder, files, depth + 1)
             continue
         yield f"{path.name}, line {number}", plain

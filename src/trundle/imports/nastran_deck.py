@@ -11,6 +11,8 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure import BeamSection, Material
 
+_MOST = 3_000_000  # grids, elements and properties: of more, memory would be full
+
 __all__ = ["Deck", "Grid", "Member", "MemberMake", "Plate", "Spring", "System"]
 
 
@@ -106,6 +108,8 @@ class Deck:
 
     def claim(self, kind: str, number: int) -> int:
         """Return a number that nothing else of its kind has; refuse one that is taken."""
+        if len(self.taken) >= _MOST:
+            raise InputError(f"a model may have {_MOST:g} cards with numbers: cut it down")
         if (kind, number) in self.taken:
             raise InputError(f"{kind} {number} is there twice")
         self.taken.add((kind, number))

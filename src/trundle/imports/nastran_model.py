@@ -53,7 +53,7 @@ class _Builder:
         self._row = {number: row for row, number in enumerate(deck.grids)}
         places = Places(deck.grids, deck.every_grid, deck.systems)
         self._nodes = np.array([places.of(number) for number in deck.grids]).reshape(-1, 3)
-        self._lumps = np.zeros(len(self._nodes))
+        self._lumps: dict[str, Array] = {}
 
     def floor(self) -> Floor:
         """Return it."""
@@ -83,15 +83,17 @@ class _Builder:
         material = self._deck.materials[number]
         return replace(material, density=material.density * self._deck.weight_to_mass)
 
-    def _lump(self, elements: Array, masses: Array) -> None:
-        """Put the mass of each element on its nodes, alike on all."""
+    def _lump(self, name: str, elements: Array, masses: Array) -> None:
+        """Put the mass of each element of a property on its nodes, alike on all."""
         share = np.repeat(masses / elements.shape[1], elements.shape[1])
-        np.add.at(self._lumps, elements.ravel(), share)
+        lumps = self._lumps.setdefault(name, np.zeros(len(self._nodes)))
+        np.add.at(lumps, elements.ravel(), share)
 
     def _lumped(self) -> Iterator[PointMasses]:
-        heavy = np.flatnonzero(self._lumps)
-        if len(heavy):
-            yield PointMasses(nodes=heavy, mass=self._lumps[heavy], name="lumped mass")
+        for name, lumps in self._lumps.items():
+            heavy = np.flatnonzero(lumps)
+            if len(heavy):
+                yield PointMasses(nodes=heavy, mass=lumps[heavy], name=f"{name}, lumped")
 
     def _faces(self) -> tuple[list[ShellGroup], list[Elements]]:
         found: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
@@ -118,7 +120,8 @@ class _Builder:
             superimposed_mass=plate.more * self._deck.weight_to_mass,
         )
         if not self._deck.consistent:
-            self._lump(elements, section.mass_per_area * _areas(self._nodes[elements]))
+            name = f"PSHELL {number}"
+            self._lump(name, elements, section.mass_per_area * _areas(self._nodes[elements]))
             light = replace(section.material, density=0.0)
             section = replace(section, material=light, superimposed_mass=0.0)
         return section if plate.shears else _without_shear(section)
@@ -137,7 +140,7 @@ class _Builder:
                 section=self._bar_section(number, numbers),
                 up=np.array(up),
                 offset=np.array(offset),
-                name=f"property {number}" if number > 0 else f"CONROD {-number}",
+                name=_bar_name(number),
             )
             pins = np.array(released)
             yield ReleasedBeams(beams=group, released=pins) if pins.any() else group
@@ -170,7 +173,7 @@ class _Builder:
         density = material.density + make.more * self._deck.weight_to_mass / make.section.area
         if not self._deck.consistent:
             lengths = np.linalg.norm(np.diff(self._nodes[elements], axis=1)[:, 0], axis=1)
-            self._lump(elements, density * make.section.area * lengths)
+            self._lump(_bar_name(number), elements, density * make.section.area * lengths)
             density = 0.0
         return replace(make.section, material=replace(material, density=density))
 
@@ -257,6 +260,10 @@ class _Builder:
                 f"grid {grid} is held in {dofs} of a system of its own (CD), which is not read"
             )
         fixed[node, [dof - 1 for dof in held]] = True
+
+
+def _bar_name(number: int) -> str:
+    return f"property {number}" if number > 0 else f"CONROD {-number}"
 
 
 def _without_shear(section: ShellSection) -> OrthotropicSection:

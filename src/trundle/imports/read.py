@@ -13,7 +13,7 @@ from trundle.structure import Floor
 __all__ = ["read_model"]
 
 _FIRST = 65536  # bytes by which formats are told
-_LARGEST = 2_000_000_000  # bytes
+_LARGEST = 500_000_000  # bytes: what is held in memory at once is a few times that
 
 
 def read_model(path: Path, asked: Asked | None = None) -> ReadModel:

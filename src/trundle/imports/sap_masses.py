@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
@@ -15,6 +15,8 @@ from trundle.imports.sap_areas import Area
 from trundle.imports.sap_frames import FramePart
 from trundle.imports.sap_joints import Joints
 from trundle.imports.sap_tables import Row, Table
+from trundle.structure import PointMasses
+from trundle.structure.elements import NodeInertia
 
 __all__ = ["Lumps", "masses_of"]
 
@@ -38,19 +40,25 @@ class Lumps:
         All frames; half the mass of each is at either end.
     areas : sequence of Area
         All areas; the mass of each element is at its corners, alike.
-    inertia : ndarray of float, shape (n_nodes, 6)
-        What is there so far.
+    at_joints : ndarray of float, shape (n_nodes, 6)
+        What is at joints themselves.
+    by_section : dict of str to ndarray of float, shape (n_nodes,)
+        Mass of frames and areas by their sections.
     """
 
     joints: Joints
     parts: Sequence[FramePart]
     areas: Sequence[Area]
-    inertia: Float[Array, "nodes 6"]
+    at_joints: Float[Array, "nodes 6"]
+    by_section: dict[str, Float[Array, " nodes"]] = field(default_factory=dict[str, Array])
+
+    def _of(self, section: str) -> Array:
+        return self.by_section.setdefault(section, np.zeros(len(self.at_joints)))
 
     def frames(self, per_length: Callable[[FramePart], float]) -> None:
         """Add mass along frames."""
         for part in self.parts:
-            self.inertia[list(part.nodes), :3] += 0.5 * per_length(part) * part.length
+            self._of(part.section)[list(part.nodes)] += 0.5 * per_length(part) * part.length
 
     def plates(self, per_area: Callable[[Area], float]) -> None:
         """Add mass over areas."""
@@ -61,8 +69,17 @@ class Lumps:
             else:
                 across = np.cross(at[:, 2] - at[:, 0], at[:, 3] - at[:, 1])
             mass = 0.5 * np.linalg.norm(across, axis=1) * per_area(area) / corners
-            for dof in range(3):
-                np.add.at(self.inertia[:, dof], area.elements.ravel(), np.repeat(mass, corners))
+            np.add.at(self._of(area.section), area.elements.ravel(), np.repeat(mass, corners))
+
+    def groups(self) -> Iterator[PointMasses | NodeInertia]:
+        """Give all that has mass, a group a section."""
+        for section, mass in self.by_section.items():
+            heavy = np.flatnonzero(mass)
+            if len(heavy):
+                yield PointMasses(nodes=heavy, mass=mass[heavy], name=f"{section}, lumped")
+        heavy = np.flatnonzero(self.at_joints.any(axis=1))
+        if len(heavy):
+            yield NodeInertia(nodes=heavy, inertia=self.at_joints[heavy], name="joint masses")
 
 
 def masses_of(
@@ -71,8 +88,8 @@ def masses_of(
     areas: Sequence[Area],
     tables: Mapping[str, Table],
     gravity: float,
-) -> Float[Array, "nodes 6"]:
-    """Return the inertia of each node, in the file's units.
+) -> tuple[PointMasses | NodeInertia, ...]:
+    """Return all that has mass, in the file's units.
 
     Parameters
     ----------
@@ -92,9 +109,8 @@ def masses_of(
     InputError
         A source of mass, or loads in it, that is not read.
     """
-    lumps = Lumps(
-        joints=joints, parts=parts, areas=areas, inertia=np.zeros((len(joints.places), 6))
-    )
+    none = np.zeros((len(joints.places), 6))
+    lumps = Lumps(joints=joints, parts=parts, areas=areas, at_joints=none)
     elements, added, patterns = _source(tables)
     if elements:
         frame = _added(tables, "FRAME ADDED MASS ASSIGNMENTS", "Frame", "MassPerLen")
@@ -104,12 +120,12 @@ def masses_of(
     if added:
         for row in _rows(tables, "JOINT ADDED MASS ASSIGNMENTS"):
             node = joints.node(row.text("Joint"), row.place)
-            lumps.inertia[node] += _joint_mass(joints, row)
+            lumps.at_joints[node] += _joint_mass(joints, row)
     if patterns:
         _check_loads(tables, patterns)
         _of_weight(lumps, tables, patterns, gravity)
         _of_loads(lumps, tables, patterns, gravity)
-    return lumps.inertia
+    return tuple(lumps.groups())
 
 
 def _rows(tables: Mapping[str, Table], title: str) -> Iterator[Row]:
@@ -185,7 +201,7 @@ def _of_loads(
         node = lumps.joints.node(row.text("Joint"), row.place)
         weight = -row.number("F3", 0.0)
         _check(row, weight)
-        lumps.inertia[node, :3] += share * weight / gravity
+        lumps.at_joints[node, :3] += share * weight / gravity
     frames, areas = defaultdict[str, float](float), defaultdict[str, float](float)
     for row, share in _loads(tables, "FRAME LOADS - DISTRIBUTED", patterns):
         weight = _down(row, row.number("FOverLA"))

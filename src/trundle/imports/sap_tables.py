@@ -101,7 +101,7 @@ class Table:
 
     @property
     def unused(self) -> tuple[str, ...]:
-        """Keys that nobody asked for."""
+        """Which keys nobody asked for."""
         there = dict.fromkeys(key for row in self.rows for key in row.cells)
         used = {key for row in self.rows for key in row.used}
         return tuple(key for key in there if key not in used)

@@ -26,6 +26,7 @@ from trundle.imports.unit_system import agreed_units, in_si
 
 __all__ = ["FORMAT"]
 
+_MOST = 100  # problems that are told: more say nothing new
 _CARDS = {**GRID_CARDS, **PART_CARDS, **MEMBER_CARDS}
 
 _NOTHING_OF_THE_MODEL = frozenset(
@@ -60,6 +61,8 @@ def read(path: Path, asked: Asked) -> ReadModel:
         problem = _taken(deck, card)
         if problem is not None:
             problems.append(problem)
+        if len(problems) == _MOST:
+            break
     told = tuple(f"passed over: {name} ({times})" for name, times in sorted(passed.items()))
     floor, units = None, None
     if not problems:
@@ -79,6 +82,13 @@ def read(path: Path, asked: Asked) -> ReadModel:
 
 def _taken(deck: Deck, card: Card) -> Problem | None:
     """Take a card into the deck; return why it cannot be."""
+    if card.name == "INCLUDE":
+        return Problem(
+            place=card.place,
+            value=card.get(2),
+            rule="no such file: what it holds of the model is not known",
+            remedy="put it beside the model",
+        )
     if card.name not in _CARDS:
         return Problem(
             place=card.place,

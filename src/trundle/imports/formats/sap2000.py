@@ -20,7 +20,7 @@ from trundle.imports.sap_makes import areas_of, frames_of, materials_of
 from trundle.imports.sap_masses import masses_of
 from trundle.imports.sap_tables import Table, read_tables
 from trundle.imports.unit_system import Units, agreed_units, in_si, units_of
-from trundle.structure import Floor
+from trundle.structure import Floor, PointMasses
 from trundle.structure.elements import NodeInertia
 
 __all__ = ["FORMAT"]
@@ -132,25 +132,20 @@ def _floor(tables: Mapping[str, Table], units: Units, name: str) -> Floor:
     areas = areas_placed(joints, tables, areas_of(table("AREA SECTION PROPERTIES"), materials))
     makes = frames_of(table("FRAME SECTION PROPERTIES 01 - GENERAL"), materials)
     parts = frames_placed(joints, tables, makes)
-    inertia = masses_of(joints, parts, areas, tables, 9.80665 / units.length)
+    masses = masses_of(joints, parts, areas, tables, 9.80665 / units.length)
     fixed = restraints_of(
         joints, tables.get("JOINT RESTRAINT ASSIGNMENTS"), tables.get("ACTIVE DEGREES OF FREEDOM")
     )
     shells, triangles = plates_of(areas)
     beams, released = beams_of(parts)
-    heavy = np.flatnonzero(inertia.any(axis=1))
-    lumps = (
-        (NodeInertia(nodes=heavy, inertia=inertia[heavy], name="lumped mass"),)
-        if len(heavy)
-        else ()
-    )
     return Floor(
         nodes=np.array(joints.places),
         fixed=fixed,
         shells=tuple(shells),
         beams=tuple(beams),
         springs=tuple(springs_of(joints, tables.get("JOINT SPRING ASSIGNMENTS 1 - UNCOUPLED"))),
-        others=(*triangles, *released, *lumps),
+        masses=tuple(one for one in masses if isinstance(one, PointMasses)),
+        others=(*triangles, *released, *(m for m in masses if isinstance(m, NodeInertia))),
         links=constraints_of(joints, fixed, tables),
         name=name,
     )

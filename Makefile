@@ -36,6 +36,7 @@ check: .venv/.ready-dev
 
 test: check
 	sh scripts/setup_browser.sh
+	sh scripts/setup_gltf_validator.sh
 	$(BIN)/python -m pytest -n 2 -m "not longest"
 
 fast: .venv/.ready-dev

@@ -242,7 +242,7 @@ def test_clamped_plates_under_pressure(kind, wanted):
     ("name", "said"),
     [
         ("nastran_cofe/bar_modes.dat", "svanberg.bdf"),
-        ("nastran_pynastran/plate_mixed.bdf", "PCOMP"),
+        ("nastran_pynastran/plate_mixed.bdf", "PCOMP 2 couples"),
         ("nastran_pynastran/mode_solid_shell_bar.bdf", "geom.inc"),
     ],
 )
@@ -276,3 +276,74 @@ def test_a_plate_without_mid3_does_not_shear(tmp_path):
     bends, shears = 1.0 / (3.0 * 1e9 * 0.5 * 0.2**3 / 12.0), 1.0 / (5.0 / 6.0 * 0.5e9 * 0.1)
     assert found[0] == pytest.approx(bends, rel=5e-3)
     assert found[1] - found[0] == pytest.approx(shears, rel=1e-3)
+
+
+def strip(tmp_path, *cards, n=12):
+    """Return the tip's deflection of a strip 6 x 1 m under 1 N, held at one end; its plate's cards."""
+    nodes = "".join(
+        f"GRID,{10 * i + j + 1},,{6.0 * i / n},{1.0 * j},0.,,{'123456' if i == 0 else ''}\n"
+        for i in range(n + 1) for j in range(2)
+    )  # fmt: skip
+    way = next((c.partition(":")[2] for c in cards if c.startswith("WAY:")), "")
+    faces = "".join(
+        f"CQUAD4,{i + 1},1,{10 * i + 1},{10 * i + 11},{10 * i + 12},{10 * i + 2},{way}\n"
+        for i in range(n)
+    )
+    text = "BEGIN BULK\n" + "\n".join(c for c in cards if not c.startswith("WAY:")) + "\n"
+    floor = model(tmp_path, text + nodes + faces)
+    load = np.zeros(floor.n_dofs)
+    load[floor.dof_index[-2:, 2]] = 0.5
+    return spsolve(floor.stiffness, load)[floor.dof_index[-1, 2]], floor
+
+
+MAT8 = "MAT8,1,2.+10,5.+9,0.,3.+9,,,1600."
+
+
+@pytest.mark.parametrize(("way", "e"), [("", 2e10), ("90.", 5e9), ("4", 5e9), ("0", 2e10)])
+def test_an_orthotropic_plate_bends_along_its_axes(tmp_path, way, e):
+    """P L3 / 3 E I with the modulus along the strip: by an angle, or by a system's x axis."""
+    system = "CORD2R,4,0,0.,0.,0.,0.,0.,1.,+\n+,0.,1.,0."
+    tip, floor = strip(tmp_path, MAT8, "PSHELL,1,1,.1,1,,", system, f"WAY:{way}")
+    assert tip == pytest.approx(6.0**3 / (3.0 * e * 0.1**3 / 12.0), rel=5e-3)
+    assert floor.moving_mass() == pytest.approx(1600.0 * 0.1 * 6.0 * (1.0 - 0.5 / 12.0))
+
+
+def test_a_laminate_is_the_plate_that_is_as_stiff(tmp_path):
+    """Plies 0/90/0 of a third each: E I by layers; equal isotropic plies are a solid plate."""
+    third = 0.1 / 3.0
+    plies = f"PCOMP,1,,,,,,,,+\n+,1,{third!r:.12},0.,YES,1,{third!r:.12},90.,YES,+\n+,1,{third!r:.12},0."
+    tip, floor = strip(tmp_path, MAT8, plies)
+    inner = third**3 / 12.0
+    rigidity = 2e10 * (0.1**3 / 12.0 - inner) + 5e9 * inner
+    assert tip == pytest.approx(6.0**3 / (3.0 * rigidity), rel=5e-3)
+    assert floor.shells[0].section.thickness == pytest.approx(0.1)
+    isotropic = "MAT1,1,2.+10,,.2,2000."
+    both = [
+        strip(tmp_path, isotropic, plate)[1].matrices()
+        for plate in (plies, "PCOMP,1,,,,,,,SYM,+\n+,1,.05,0.,YES", "PSHELL,1,1,.1,1,,1")
+    ]
+    for laminate in both[:2]:
+        for ours, theirs in zip(laminate, both[2], strict=True):
+            assert abs(ours - theirs).max() < 1e-8 * abs(theirs).max()
+
+
+@pytest.mark.parametrize(
+    ("cards", "said"),
+    [
+        ((MAT8, "PCOMP,1,,,,,,,,+\n+,1,.05,0.,YES,1,.05,90.,YES"), "couples stretching, bending"),
+        ((MAT8, "PCOMP,1,,,,,,,,+\n+,1,.1,30.,YES"), "couples stretching, bending"),
+        ((MAT8, "PCOMP,1,-.05,,,,,,,+\n+,7,.1,0.,YES"), "names material 7"),
+        (("MAT8,1,2.+10,5.+9,3.,3.+9", "PSHELL,1,1,.1,1"), "leave no energy"),
+        (
+            ("MAT2,1,2.+10,1.+9,1.+8,2.+10,0.,8.+9", "PSHELL,1,1,.1,1"),
+            "couple stretching and shear",
+        ),
+    ],
+)
+def test_plates_without_an_equivalent_are_refused(tmp_path, cards, said):
+    path = tmp_path / "plate.bdf"
+    nodes = "".join(
+        f"GRID,{i + 1},,{x}.,{y}.,0.\n" for i, (x, y) in enumerate([(0, 0), (1, 0), (1, 1), (0, 1)])
+    )
+    path.write_text("BEGIN BULK\n" + "\n".join(cards) + "\n" + nodes + "CQUAD4,1,1,1,2,3,4\n")
+    assert said in " ".join(str(one) for one in read_model(path).problems)

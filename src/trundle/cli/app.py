@@ -262,6 +262,47 @@ def model(
 
 
 @app.command()
+def export(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            help="Study, model of another program, or results folder.",
+            metavar="STUDY|MODEL|RESULTS",
+        ),
+    ],
+    out: Annotated[
+        Path, typer.Argument(help="File to write; its ending says what.", metavar="FILE")
+    ],
+    *,
+    kind: Annotated[
+        str, typer.Option("--kind", help="vtu, pvd, gltf, nastran, uff, geojson; else by FILE.")
+    ] = "",
+    f_max: Annotated[str, typer.Option("--f-max", help="Modes to here: '60 Hz'.")] = "",
+    case: Annotated[str, typer.Option("--case", help="Case that is played back.")] = "",
+    road: Annotated[str, typer.Option("--road", help="On which road.")] = "",
+    method: Annotated[str, typer.Option("--method", help="By which method.")] = "",
+    frames: Annotated[int, typer.Option("--frames", min=2, max=5000, help="Of a crossing.")] = 120,
+    units: Annotated[str, typer.Option("--units", help="Of a model: 'kN, m'.")] = "",
+    origin: Annotated[
+        str, typer.Option("--origin", help="Longitude, latitude of x = y = 0, for maps.")
+    ] = "",
+    quiet: options.Quiet = False,
+) -> None:
+    """Write for other programs: mesh and modes, a crossing, the model, modes alone, maps.
+
+    .vtu mesh with modes, .pvd a crossing in time (ParaView); .glb a scene with animated modes
+    (glTF); .bdf the model as Nastran bulk data, to be checked by any other program; .uff modes
+    (dataset 55); .geojson the maps of a results folder.
+    """
+    from trundle.cli import export_command
+
+    wanted = export_command.Wanted(
+        f_max=f_max, case=case, road=road, method=method, units=units, origin=origin, frames=frames
+    )
+    export_command.export_of(source, out, kind=kind, wanted=wanted, quiet=quiet)
+
+
+@app.command()
 def modes(
     study: StudyPath,
     *,

@@ -13,7 +13,18 @@ from trundle.structure import BeamSection, Material
 
 _MOST = 3_000_000  # grids, elements and properties: of more, memory would be full
 
-__all__ = ["Deck", "Grid", "Member", "MemberMake", "Plate", "Spring", "System"]
+__all__ = [
+    "Deck",
+    "Face",
+    "Grid",
+    "Laminate",
+    "Member",
+    "MemberMake",
+    "PlaneLaw",
+    "Plate",
+    "Spring",
+    "System",
+]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,12 +76,46 @@ class MemberMake:
 
 @dataclass(frozen=True, kw_only=True)
 class Plate:
-    """Hold a PSHELL: material, thickness, mass besides a square metre, whether shear bends it."""
+    """Hold a PSHELL: its materials of stretching, bending and shear, and its sizes.
 
-    material: int
+    Without a material of shear (0) it does not shear; `bending` is 12 I / T^3, `shear` TS / T, and
+    `more` mass besides a square metre.
+    """
+
+    materials: tuple[int, int, int]
     thickness: float
+    bending: float = 1.0
+    shear: float = 5.0 / 6.0
+    more: float = 0.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlaneLaw:
+    """Hold a MAT2 or MAT8: stresses by strains along its axes, shear across, density."""
+
+    plane: tuple[float, float, float, float]  # along x, along y, both, in shear
+    across: tuple[float, float] | None  # None: it does not shear
+    density: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Laminate:
+    """Hold a PCOMP: plies from below, as material, thickness and angle [degrees]."""
+
+    plies: tuple[tuple[int, float, float], ...]
+    bottom: float
     more: float
-    shears: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Face:
+    """Hold a plate element: its grids, its property, and the axis of its material."""
+
+    property: int
+    corners: tuple[int, ...]
+    angle: float = 0.0  # from its first side [degrees]
+    system: int | None = None  # whose x axis is it instead
+    place: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -92,14 +137,15 @@ class Deck:
     every_grid: Grid = field(default_factory=Grid)
     systems: dict[int, System] = field(default_factory=dict)
     materials: dict[int, Material] = field(default_factory=dict)
-    shells: dict[int, Plate] = field(default_factory=dict)
+    laws: dict[int, PlaneLaw] = field(default_factory=dict)
+    shells: dict[int, Plate | Laminate] = field(default_factory=dict)
     members: dict[int, MemberMake] = field(default_factory=dict)
     stiffnesses: dict[int, tuple[float, ...]] = field(default_factory=dict)
-    faces: list[tuple[int, tuple[int, ...], str]] = field(default_factory=list)
+    faces: list[Face] = field(default_factory=list)
     bars: list[Member] = field(default_factory=list)
     springs: list[Spring] = field(default_factory=list)
-    rigid: list[tuple[int, tuple[int, ...], str]] = field(default_factory=list)
-    masses: list[tuple[int, float]] = field(default_factory=list)
+    rigid: list[tuple[int, tuple[int, ...], str, str]] = field(default_factory=list)
+    masses: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)
     supports: dict[int, list[tuple[range, str]]] = field(default_factory=lambda: defaultdict(list))
     added: dict[int, list[int]] = field(default_factory=dict)
     weight_to_mass: float = 1.0

@@ -100,13 +100,14 @@ def _spcadd(deck: Deck, card: Card) -> None:
 
 def _rbe2(deck: Deck, card: Card) -> None:
     deck.claim("element", whole(card.get(2)))
-    if sorted(card.get(4)) != list("123456"):
-        raise InputError(f"grids follow in all of 123456, or are not read; got {card.get(4)}")
+    dofs = "".join(sorted(card.get(4)))
+    if not dofs or not set(dofs) <= set("123456") or len(set(dofs)) < len(dofs):
+        raise InputError(f"grids follow in dofs 1 to 6; got {card.get(4)!r}")
     named = [value for value in card.fields[3:] if value]
     if named and not named[-1].lstrip("+-").isdigit():
         named.pop()  # a coefficient of thermal expansion
     behind = tuple(n for some in _ranges(named) for n in some)
-    deck.rigid.append((whole(card.get(3)), behind, card.place))
+    deck.rigid.append((whole(card.get(3)), behind, dofs, card.place))
 
 
 def _param(deck: Deck, card: Card) -> None:

@@ -11,8 +11,9 @@ import numpy as np
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.imports.nastran_deck import Deck, Member, MemberMake
+from trundle.imports.nastran_deck import Deck, Face, Laminate, Member, MemberMake
 from trundle.imports.nastran_places import Places
+from trundle.imports.nastran_plates import axis_of, is_turned, plate_section
 from trundle.structure import (
     BeamGroup,
     BeamSection,
@@ -26,11 +27,11 @@ from trundle.structure import (
     SpringGroup,
     TriangleGroup,
 )
-from trundle.structure.elements import GROUND, Elements, ReleasedBeams
+from trundle.structure.elements import GROUND, Elements, NodeInertia, ReleasedBeams
 
 __all__ = ["floor_of"]
 
-_STIFF = 1e4  # times its shear stiffness, of a plate that does not shear
+_LEVEL = 1e-9  # of the cosine of a system's z to the vertical
 _SAME = 1e-6  # m, within which the grids of a bush are at one place
 
 
@@ -51,23 +52,30 @@ class _Builder:
     def __init__(self, deck: Deck, asked: int | None, name: str) -> None:
         self._deck, self._asked, self._name = deck, asked, name
         self._row = {number: row for row, number in enumerate(deck.grids)}
-        places = Places(deck.grids, deck.every_grid, deck.systems)
-        self._nodes = np.array([places.of(number) for number in deck.grids]).reshape(-1, 3)
+        self._places = Places(deck.grids, deck.every_grid, deck.systems)
+        self._nodes = np.array([self._places.of(number) for number in deck.grids]).reshape(-1, 3)
         self._lumps: dict[str, Array] = {}
+        self._angles = np.zeros((len(self._nodes), 2))
 
     def floor(self) -> Floor:
         """Return it."""
         shells, triangles = self._faces()
         bars = list(self._bars())
+        masses, fixed = list(self._masses()), self._fixed()
         lumps = () if self._deck.consistent else tuple(self._lumped())
         return Floor(
             nodes=self._nodes,
-            fixed=self._fixed(),
+            fixed=fixed,
+            angles=self._angles if self._angles.any() else None,
             shells=tuple(shells),
             beams=tuple(bar for bar in bars if isinstance(bar, BeamGroup)),
             springs=tuple(self._springs()),
-            masses=(*self._masses(), *lumps),
-            others=(*triangles, *(b for b in bars if not isinstance(b, BeamGroup))),
+            masses=(*(m for m in masses if isinstance(m, PointMasses)), *lumps),
+            others=(
+                *triangles,
+                *(b for b in bars if not isinstance(b, BeamGroup)),
+                *(m for m in masses if isinstance(m, NodeInertia)),
+            ),
             links=self._links(),
             name=self._name,
         )
@@ -96,35 +104,50 @@ class _Builder:
                 yield PointMasses(nodes=heavy, mass=lumps[heavy], name=f"{name}, lumped")
 
     def _faces(self) -> tuple[list[ShellGroup], list[Elements]]:
-        found: dict[tuple[int, int], list[list[int]]] = defaultdict(list)
-        for number, corners, place in self._deck.faces:
-            if number not in self._deck.shells:
-                raise InputError(f"{place} names property {number}, which is no PSHELL")
-            found[number, len(corners)].append([self._node(n, place) for n in corners])
+        found: dict[tuple[int, int, tuple[float, ...]], list[list[int]]] = defaultdict(list)
+        for face in self._deck.faces:
+            if face.property not in self._deck.shells:
+                raise InputError(
+                    f"{face.place} names property {face.property}, which is no PSHELL or PCOMP"
+                )
+            nodes = [self._node(n, face.place) for n in face.corners]
+            axis = self._axis(face, nodes) if is_turned(self._deck, face.property) else ()
+            found[face.property, len(nodes), axis].append(nodes)
         shells, triangles = list[ShellGroup](), list[Elements]()
-        for (number, corners), elements in found.items():
+        for (number, corners, axis), elements in found.items():
             numbers = np.array(elements)
-            section, name = self._plate(number, numbers), f"PSHELL {number}"
+            section, name = self._plate(number, numbers, axis), self._plate_name(number)
             if corners == 4:
                 shells.append(ShellGroup(elements=numbers, section=section, name=name))
             else:
                 triangles.append(TriangleGroup(connectivity=numbers, section=section, name=name))
         return shells, triangles
 
-    def _plate(self, number: int, elements: Array) -> ShellSection | OrthotropicSection:
+    def _axis(self, face: Face, nodes: list[int]) -> tuple[float, ...]:
+        first = None
+        if face.system is not None:
+            first = self._places.axes_of(face.system, face.place)[0]
+        return axis_of(face, self._nodes[nodes], first)
+
+    def _plate_name(self, number: int) -> str:
+        laminate = isinstance(self._deck.shells[number], Laminate)
+        return f"{'PCOMP' if laminate else 'PSHELL'} {number}"
+
+    def _plate(
+        self, number: int, elements: Array, axis: tuple[float, ...]
+    ) -> ShellSection | OrthotropicSection:
         """Return a plate's section; without mass where that is on its nodes."""
-        plate = self._deck.shells[number]
-        section = ShellSection(
-            thickness=plate.thickness,
-            material=self._material(plate.material, f"PSHELL {number}"),
-            superimposed_mass=plate.more * self._deck.weight_to_mass,
-        )
-        if not self._deck.consistent:
-            name = f"PSHELL {number}"
-            self._lump(name, elements, section.mass_per_area * _areas(self._nodes[elements]))
-            light = replace(section.material, density=0.0)
-            section = replace(section, material=light, superimposed_mass=0.0)
-        return section if plate.shears else _without_shear(section)
+        section = plate_section(self._deck, number)
+        if isinstance(section, OrthotropicSection) and axis:
+            section = replace(section, axis=np.array(axis))
+        if self._deck.consistent:
+            return section
+        name = self._plate_name(number)
+        self._lump(name, elements, section.mass_per_area * _areas(self._nodes[elements]))
+        if isinstance(section, OrthotropicSection):
+            return replace(section, mass_per_area=0.0, rotary_inertia=0.0)
+        light = replace(section.material, density=0.0)
+        return replace(section, material=light, superimposed_mass=0.0)
 
     def _bars(self) -> Iterator[BeamGroup | ReleasedBeams]:
         found: dict[tuple, list[tuple[int, int]]] = defaultdict(list)
@@ -177,11 +200,16 @@ class _Builder:
             density = 0.0
         return replace(make.section, material=replace(material, density=density))
 
-    def _masses(self) -> Iterator[PointMasses]:
-        if self._deck.masses:
-            at = [self._node(number, "a CONM2") for number, _ in self._deck.masses]
-            mass = self._deck.weight_to_mass * np.array([mass for _, mass in self._deck.masses])
-            yield PointMasses(nodes=np.array(at), mass=mass, name="CONM2")
+    def _masses(self) -> Iterator[PointMasses | NodeInertia]:
+        if not self._deck.masses:
+            return
+        at = np.array([self._node(number, "a mass") for number, _ in self._deck.masses])
+        six = self._deck.weight_to_mass * np.array([mass for _, mass in self._deck.masses])
+        plain = (six[:, :3] == six[:, :1]).all(axis=1) & ~six[:, 3:].any(axis=1)
+        if plain.any():
+            yield PointMasses(nodes=at[plain], mass=six[plain, 0], name="CONM2")
+        if not plain.all():
+            yield NodeInertia(nodes=at[~plain], inertia=six[~plain], name="CONM2 and CMASS2")
 
     def _springs(self) -> Iterator[SpringGroup]:
         for spring in self._deck.springs:
@@ -213,17 +241,27 @@ class _Builder:
             raise InputError(f"{place}: a bush between grids that are apart is not read")
 
     def _links(self) -> tuple[RigidLinks, ...]:
-        leads, behind = list[int](), list[int]()
-        for lead, some, place in self._deck.rigid:
-            behind += [self._node(number, place) for number in some]
-            leads += [self._node(lead, place)] * len(some)
-        root = dict(zip(behind, leads, strict=True))
-        if len(root) < len(behind):
-            raise InputError("a grid follows two others by RBE2")
-        leads = [_first_of(root, node) for node in behind]
-        if not behind:
-            return ()
-        return (RigidLinks(leads=np.array(leads), follows=np.array(behind)),)
+        wholly: dict[int, int] = {}
+        partly: dict[str, list[tuple[int, int]]] = defaultdict(list)
+        for lead, some, dofs, place in self._deck.rigid:
+            for number in some:
+                pair = self._node(number, place), self._node(lead, place)
+                if dofs != "123456":
+                    partly[dofs].append(pair)
+                elif pair[0] in wholly:
+                    raise InputError("a grid follows two others by RBE2")
+                else:
+                    wholly[pair[0]] = pair[1]
+        found = list[RigidLinks]()
+        if wholly:
+            leads = np.array([_first_of(wholly, node) for node in wholly.values()])
+            found.append(RigidLinks(leads=leads, follows=np.array(list(wholly))))
+        for dofs, pairs in partly.items():
+            behind, leads = np.array(pairs).T
+            leads = np.array([wholly.get(int(node), int(node)) for node in leads])
+            tied = np.array([str(i) in dofs for i in range(1, 7)])
+            found.append(RigidLinks(leads=leads, follows=behind, dofs=tied))
+        return tuple(found)
 
     def _moves_in(self, number: int) -> int:
         own = self._deck.grids[number].moves_in
@@ -256,30 +294,22 @@ class _Builder:
         if self._moves_in(grid) and any(
             0 < len(held & some) < 3 for some in ({1, 2, 3}, {4, 5, 6})
         ):
-            raise InputError(
-                f"grid {grid} is held in {dofs} of a system of its own (CD), which is not read"
-            )
+            self._angles[node] = self._angle(grid, dofs)
         fixed[node, [dof - 1 for dof in held]] = True
+
+    def _angle(self, grid: int, dofs: str) -> float:
+        """Return by how much the axes are turned about z along which a grid is held in part."""
+        axes = self._places.axes_of(self._moves_in(grid), f"grid {grid}")
+        if abs(axes[2, 2] - 1.0) > _LEVEL:
+            raise InputError(
+                f"grid {grid} is held in {dofs} of a system of its own (CD) that is not turned "
+                "about z alone, which is not read"
+            )
+        return float(np.arctan2(axes[0, 1], axes[0, 0]))
 
 
 def _bar_name(number: int) -> str:
     return f"property {number}" if number > 0 else f"CONROD {-number}"
-
-
-def _without_shear(section: ShellSection) -> OrthotropicSection:
-    """Return a plate that does not shear, as one without MID3."""
-    laws = section.laws(np.eye(3)[None])
-    (d, d_xy), d_t = laws.bending[0, :2], laws.bending[2, 2]
-    (c, c_xy), c_t = laws.membrane[0, :2], laws.membrane[2, 2]
-    shear = _STIFF * float(laws.shear[0, 0])
-    return OrthotropicSection(
-        bending=(d, d, d_xy, d_t),
-        membrane=(c, c, c_xy, c_t),
-        shear=(shear, shear),
-        mass_per_area=section.mass_per_area,
-        rotary_inertia=section.rotary_inertia,
-        thickness=section.thickness,
-    )
 
 
 def _released(bar: Member, make: MemberMake) -> tuple[tuple[bool, ...], ...]:

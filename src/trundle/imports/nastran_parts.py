@@ -7,13 +7,12 @@ from collections.abc import Callable
 from trundle._checks import non_negative, positive
 from trundle.errors import InputError
 from trundle.imports.nastran_cards import Card, real, whole
-from trundle.imports.nastran_deck import Deck, Plate, Spring
+from trundle.imports.nastran_deck import Deck, Face, Laminate, PlaneLaw, Plate, Spring
 from trundle.structure import Material
 
 __all__ = ["PART_CARDS"]
 
 _SHEAR = 5.0 / 6.0
-_ALIKE = 1e-3
 
 
 def _mat1(deck: Deck, card: Card) -> None:
@@ -30,34 +29,99 @@ def _mat1(deck: Deck, card: Card) -> None:
     )
 
 
+def _mat2(deck: Deck, card: Card) -> None:
+    x, both, skew_x, y, skew_y, twist = (real(card.get(i), 0.0) for i in range(3, 9))
+    if skew_x or skew_y:
+        raise InputError("G13 and G23 couple stretching and shear: not read")
+    deck.laws[deck.claim("material", whole(card.get(2)))] = PlaneLaw(
+        plane=(positive("G11", x), positive("G22", y), both, positive("G33", twist)),
+        across=(x, y),  # where it is the third material of a plate: G11 and G22 are across
+        density=non_negative("RHO", real(card.get(9), 0.0)),
+    )
+
+
+def _mat8(deck: Deck, card: Card) -> None:
+    e1, e2, nu12 = positive("E1", real(card.get(3))), positive("E2", real(card.get(4))), card.get(5)
+    nu, g12 = real(nu12, 0.0), positive("G12", real(card.get(6)))
+    rest = 1.0 - nu**2 * e2 / e1
+    if rest <= 0.0:
+        raise InputError(f"E1, E2 and NU12 of {nu:g} leave no energy in some strain")
+    across = (real(card.get(7), 0.0), real(card.get(8), 0.0))
+    deck.laws[deck.claim("material", whole(card.get(2)))] = PlaneLaw(
+        plane=(e1 / rest, e2 / rest, nu * e2 / rest, g12),
+        across=across if all(across) else None,
+        density=non_negative("RHO", real(card.get(9), 0.0)),
+    )
+
+
 def _pshell(deck: Deck, card: Card) -> None:
-    material, bending = whole(card.get(3)), whole(card.get(5), 0)
-    if bending != material or abs(real(card.get(6), 1.0) - 1.0) > 1e-9:
-        raise InputError("only solid plates are read: MID2 as MID1, and 12 I / T^3 of 1")
-    shear = whole(card.get(7), 0)
-    if shear not in {0, material} or abs(real(card.get(8), _SHEAR) / _SHEAR - 1.0) > _ALIKE:
-        raise InputError("only solid plates are read: MID3 as MID1 or blank, and TS / T of 5/6")
+    stretching, bending = whole(card.get(3), 0), whole(card.get(5), 0)
+    if not stretching or not bending:
+        raise InputError("a plate that only stretches, or only bends, is not read: give both MID")
     deck.shells[deck.claim("property", whole(card.get(2)))] = Plate(
-        material=material,
-        thickness=real(card.get(4)),
+        materials=(stretching, bending, whole(card.get(7), 0)),
+        thickness=positive("T", real(card.get(4))),
+        bending=positive("12 I / T^3", real(card.get(6), 1.0)),
+        shear=positive("TS / T", real(card.get(8), _SHEAR)),
         more=real(card.get(9), 0.0),
-        shears=shear > 0,
+    )
+
+
+def _pcomp(deck: Deck, card: Card) -> None:
+    number, words = whole(card.get(2)), card.fields[8:]
+    symmetric = card.get(9).upper()
+    if symmetric not in {"", "SYM"}:
+        raise InputError(f"a laminate of {symmetric} is not read; SYM, or none, is")
+    plies = list[tuple[int, float, float]]()
+    for at in range(0, len(words), 4):
+        ply = [*words[at : at + 4], "", "", ""]
+        if any(ply[:3]):
+            material = whole(ply[0], plies[-1][0] if plies else 0)
+            thick = real(ply[1], plies[-1][1] if plies else 0.0)
+            plies.append((material, positive("the thickness of a ply", thick), real(ply[2], 0.0)))
+    if not plies:
+        raise InputError("a laminate without plies")
+    plies += plies[::-1] if symmetric else []
+    whole_thickness = sum(thick for _, thick, _ in plies)
+    deck.shells[deck.claim("property", number)] = Laminate(
+        plies=tuple(plies),
+        bottom=real(card.get(3), -0.5 * whole_thickness),
+        more=real(card.get(4), 0.0),
     )
 
 
 def _face(deck: Deck, card: Card, corners: int) -> None:
     if real(card.get(5 + corners), 0.0) or any(card.get(i) for i in range(6 + corners, 20)):
-        raise InputError("an offset, an angle of material or thicknesses at corners are not read")
+        raise InputError("an offset, or thicknesses at corners, are not read")
     numbers = tuple(whole(card.get(4 + i)) for i in range(corners))
-    number = deck.claim("element", whole(card.get(2)))
-    deck.faces.append((whole(card.get(3), number), numbers, card.place))
+    number, way = deck.claim("element", whole(card.get(2))), card.get(4 + corners)
+    system = whole(way) if way and way.lstrip("+").isdigit() else None
+    deck.faces.append(
+        Face(
+            property=whole(card.get(3), number),
+            corners=numbers,
+            angle=0.0 if system is not None else real(way, 0.0),
+            system=system,
+            place=card.place,
+        )
+    )
 
 
 def _conm2(deck: Deck, card: Card) -> None:
-    if any(real(card.get(i), 0.0) for i in (6, 7, 8, 10, 11, 12, 13, 14, 15)):
-        raise InputError("masses beside their grid, and moments of inertia, are not read")
+    if any(real(card.get(i), 0.0) for i in (6, 7, 8, 11, 13, 14)):
+        raise InputError("masses beside their grid, and products of inertia, are not read")
     deck.claim("element", whole(card.get(2)))
-    deck.masses.append((whole(card.get(3)), non_negative("M", real(card.get(5)))))
+    mass = non_negative("M", real(card.get(5)))
+    about = (non_negative("I", real(card.get(i), 0.0)) for i in (10, 12, 15))
+    deck.masses.append((whole(card.get(3)), (mass, mass, mass, *about)))
+
+
+def _cmass2(deck: Deck, card: Card) -> None:
+    deck.claim("element", whole(card.get(2)))
+    mass, grid, dof = non_negative("M", real(card.get(3))), whole(card.get(4)), whole(card.get(5))
+    if card.get(6) or not 1 <= dof <= 6:
+        raise InputError("a scalar mass is read at one dof of one grid, 1 to 6")
+    deck.masses.append((grid, tuple(mass * (i == dof) for i in range(1, 7))))
 
 
 def _pelas(deck: Deck, card: Card) -> None:
@@ -136,10 +200,14 @@ def _cbush(deck: Deck, card: Card) -> None:
 
 PART_CARDS: dict[str, Callable[[Deck, Card], None]] = {
     "MAT1": _mat1,
+    "MAT2": _mat2,
+    "MAT8": _mat8,
     "PSHELL": _pshell,
+    "PCOMP": _pcomp,
     "CQUAD4": lambda deck, card: _face(deck, card, 4),
     "CTRIA3": lambda deck, card: _face(deck, card, 3),
     "CONM2": _conm2,
+    "CMASS2": _cmass2,
     "PELAS": _pelas,
     "CELAS1": _celas1,
     "CELAS2": _celas2,

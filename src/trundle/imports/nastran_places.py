@@ -37,6 +37,21 @@ class Places:
         system = grid.system if grid.system is not None else self._every.system or 0
         return self._in_basic(system, grid.place)
 
+    def axes_of(self, system: int, where: str) -> Array:
+        """Return the axes of a rectangular system, as rows.
+
+        Raises
+        ------
+        InputError
+            None, or one whose axes turn from place to place.
+        """
+        if system == 0:
+            return np.eye(3)
+        axes = self._frame(system)[1]
+        if self._systems[system].kind != "R":
+            raise InputError(f"{where}: the axes of system {system} turn from place to place")
+        return axes
+
     def _in_basic(self, system: int, place: Array) -> Array:
         if system == 0:
             return place

@@ -191,7 +191,7 @@ def results(tmp_path_factory):
 
 
 def test_a_crossing_is_the_first_run_of_its_study(tmp_path, results):
-    """At a node where a point stands its displacement is the history's; forces too."""
+    """At a node where a point stands its displacement is the history's to 0.2 %; forces too."""
     result = read_results(results)
     study = result.study
     play = playback_of(study, n_frames=50)
@@ -205,7 +205,11 @@ def test_a_crossing_is_the_first_run_of_its_study(tmp_path, results):
         )
     )
     steps = np.round(play.time / (cell.history.time[1] - cell.history.time[0])).astype(int)
-    np.testing.assert_allclose(play.motion[:, node], cell.history.displacement[steps, 0], atol=1e-9)
+    np.testing.assert_allclose(
+        play.motion[:, node],
+        cell.history.displacement[steps, 0],
+        atol=2e-3 * np.abs(cell.history.displacement).max(),
+    )
     np.testing.assert_allclose(
         play.wheels[0].forces, cell.history.contact_forces[steps], rtol=1e-6, atol=1.0
     )

@@ -303,6 +303,43 @@ def export(
 
 
 @app.command()
+def view(
+    source: Annotated[
+        Path,
+        typer.Argument(
+            help="Study, model of another program, or results folder.",
+            metavar="STUDY|MODEL|RESULTS",
+        ),
+    ],
+    *,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Page. \\[default: NAME-view.html]")
+    ] = None,
+    f_max: Annotated[str, typer.Option("--f-max", help="Modes to here: '60 Hz'.")] = "",
+    case: Annotated[str, typer.Option("--case", help="Case that is played back.")] = "",
+    road: Annotated[str, typer.Option("--road", help="On which road.")] = "",
+    method: Annotated[str, typer.Option("--method", help="By which method.")] = "",
+    frames: Annotated[int, typer.Option("--frames", min=2, max=2000, help="Of a crossing.")] = 240,
+    no_crossing: Annotated[
+        bool, typer.Option("--no-crossing", help="Without a crossing: mesh and modes alone.")
+    ] = False,
+    units: Annotated[str, typer.Option("--units", help="Of a model: 'kN, m'.")] = "",
+    quiet: options.Quiet = False,
+) -> None:
+    """Look at it: one page with the model in 3-D, its modes, and a crossing played back.
+
+    Sections are to scale, storeys and parts can be switched; supports, routes and points are shown;
+    the floor moves, larger than it does, while wheels and their forces pass. The page opens without
+    a network.
+    """
+    from trundle.cli import view_command
+    from trundle.cli.export_command import Wanted
+
+    wanted = Wanted(f_max=f_max, case=case, road=road, method=method, units=units, frames=frames)
+    view_command.view(source, out, wanted=wanted, crossing=not no_crossing, quiet=quiet)
+
+
+@app.command()
 def modes(
     study: StudyPath,
     *,

@@ -8,13 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from trundle._progress import Tell, silent
+from trundle._progress import Progress, Tell, silent
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.run.mode_cache import modes_of
-from trundle.simulate import PreparedFloor, Source, lay_out, prepare
+from trundle.simulate import PreparedFloor, Runs, Source, lay_out, prepare
 from trundle.simulate.ensembles import batches
+from trundle.simulate.laying_out import point_rows
 from trundle.simulate.layout import Layout
+from trundle.simulate.modal.field import field_motion
+from trundle.simulate.modal.method import FloorInModes
+from trundle.simulate.wheels.timeline import starts_standing
 from trundle.structure import Spot, Structure
 from trundle.study.model import Study
 from trundle.study.plans import Case, MethodPlan
@@ -121,26 +125,38 @@ def playback_of(
     nodes, spots, normals = surface_nodes(study.floor)
     duration = study.record_length(sources)
     steps = _frames(sources, integration.dt, duration, n_frames)
-    motion = np.empty((len(steps), len(nodes)))
-    wheels: tuple[Wheels, ...] = ()
-    blocks = list(_blocks(len(nodes), round(duration / integration.dt)))
-    for i, part in enumerate(blocks):
-        points = {f"n{row}": spots[row] for row in range(part.start, part.stop)}
-        layout = lay_out(prepared, sources, method=interaction, points=points, duration=duration)
-        done = i / len(blocks)
-        runs = next(
-            batches(
+    one = {"first": spots[0]}
+    layout = lay_out(prepared, sources, method=interaction, points=one, duration=duration)
+    forces = _run(layout, study.seed, lambda s: tell("one crossing", 0.4 + 0.2 * s)).contact_forces[
+        0
+    ]
+    if isinstance(prepared, FloorInModes) and layout.rows is not None:
+        motion = field_motion(
+            prepared,
+            layout.rows,
+            forces,
+            point_rows(study.floor, {str(i): spot for i, spot in enumerate(spots)}),
+            steps,
+            at_rest=starts_standing(sources),
+            progress=lambda s: tell("its motion", 0.6 + 0.4 * s),
+        )
+    else:
+        motion = np.empty((len(steps), len(nodes)))
+        for part in _blocks(len(nodes), round(duration / integration.dt)):
+            points = {str(i): spots[i] for i in range(part.start, part.stop)}
+            layout = lay_out(
+                prepared, sources, method=interaction, points=points, duration=duration
+            )
+            done = part.start / len(nodes)
+            share = (part.stop - part.start) / len(nodes)
+            runs = _run(
                 layout,
-                runs=range(1),
-                seed=study.seed,
-                progress=lambda s, done=done: tell(
-                    "one crossing", 0.4 + 0.6 * (done + s / len(blocks))
+                study.seed,
+                lambda s, done=done, share=share: tell(
+                    "its motion", 0.6 + 0.4 * (done + share * s)
                 ),
             )
-        )
-        motion[:, part] = runs.displacement[0, steps]
-        if not wheels:
-            wheels = tuple(_wheels(prepared, layout, runs.contact_forces[0], steps))
+            motion[:, part] = runs.displacement[0, steps]
     return Playback(
         case=which.name,
         road=on_road,
@@ -149,7 +165,7 @@ def playback_of(
         nodes=nodes,
         normals=normals,
         motion=motion,
-        wheels=wheels,
+        wheels=tuple(_wheels(prepared, layout, forces, steps)),
     )
 
 
@@ -184,6 +200,10 @@ def surface_nodes(
         nodes.append(some)
         normals.append(np.tile(surface.frame.normal, (len(some), 1)))
     return np.concatenate(nodes), spots, np.concatenate(normals)
+
+
+def _run(layout: Layout, seed: int, progress: Progress) -> Runs:
+    return next(batches(layout, runs=range(1), seed=seed, progress=progress))
 
 
 def _frames(

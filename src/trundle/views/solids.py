@@ -54,9 +54,19 @@ class Solid:
 def solids_of(structure: Structure) -> tuple[Solid, ...]:
     """Return the bodies of all groups of elements, those of one name together."""
     found: dict[tuple[str, str], list[Solid]] = {}
+    plates: dict[tuple[str, float], list[Array]] = {}
     for group in structure.elements:
+        corners = group.connectivity
+        if corners.shape[1] in {3, 4}:
+            thick = float(getattr(getattr(group, "section", None), "thickness", _THIN))
+            # a triangle is drawn as a quadrilateral of which two corners are one
+            plates.setdefault((group.name, thick), []).append(corners[:, [0, 1, 2, -1]])
+            continue
         for solid in _solids(structure.nodes, group):
             found.setdefault((solid.name, solid.kind), []).append(solid)
+    for (name, thick), blocks in plates.items():
+        solid = _plates(structure.nodes, name, np.concatenate(blocks), thick)
+        found.setdefault((name, "plate"), []).append(solid)
     return tuple(_joined(solids) for solids in found.values())
 
 
@@ -85,9 +95,6 @@ def _solids(nodes: Array, group: Elements) -> Iterator[Solid]:
         yield _members(nodes, group.beams)
     elif isinstance(group, BeamGroup):
         yield _members(nodes, group)
-    elif corners.shape[1] in {3, 4}:
-        section = getattr(group, "section", None)
-        yield _plates(nodes, group.name, corners, float(getattr(section, "thickness", _THIN)))
     elif corners.shape[1] == 2 and GROUND in corners:
         yield _marks(group.name, "spring", np.unique(corners[corners != GROUND]), 0.15)
     elif corners.shape[1] == 1:
@@ -135,9 +142,7 @@ def _plates(nodes: Array, name: str, corners: Array, thickness: float) -> Solid:
     other directions have their own.
     """
     xyz = nodes[corners]
-    normal = np.cross(xyz[:, 2] - xyz[:, 0], xyz[:, -1] - xyz[:, 1])
-    if corners.shape[1] == 3:
-        normal = np.cross(xyz[:, 1] - xyz[:, 0], xyz[:, 2] - xyz[:, 0])
+    normal = np.cross(xyz[:, 2] - xyz[:, 0], xyz[:, 3] - xyz[:, 1])
     size = np.linalg.norm(normal, axis=1, keepdims=True)
     normal = normal / np.where(size > 0.0, size, 1.0)
     direction = np.round(normal, 3)
@@ -159,15 +164,15 @@ def _plates(nodes: Array, name: str, corners: Array, thickness: float) -> Solid:
 
 
 def _fans(corners: Array) -> Array:
-    """Return quadrilaterals as two triangles each."""
-    if corners.shape[1] == 3:
-        return corners
-    return np.concatenate([corners[:, [0, 1, 2]], corners[:, [0, 2, 3]]])
+    """Return quadrilaterals as two triangles each, triangles as one."""
+    second = corners[corners[:, 2] != corners[:, 3]]
+    return np.concatenate([corners[:, [0, 1, 2]], second[:, [0, 2, 3]]])
 
 
 def _edges(corners: Array, n: int) -> Array:
     """Return the sides along edges that one element alone has."""
     a, b = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    a, b = a[a != b], b[a != b]
     both = np.sort(np.column_stack([a, b]), axis=1)
     _, first, times = np.unique(both, axis=0, return_index=True, return_counts=True)
     free = first[times == 1]

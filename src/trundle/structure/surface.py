@@ -99,7 +99,9 @@ class Surface:
     @property
     def element_size(self) -> float:
         """Median edge of its elements [m]."""
-        ends = self.nodes[self._parts[0].elements[:, :2]]
+        # of a group that lies elsewhere there is nothing
+        some = next(part for part in self._parts if len(part.elements))
+        ends = self.nodes[some.elements[:, :2]]
         return float(np.median(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)))
 
     @property

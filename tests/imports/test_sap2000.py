@@ -445,3 +445,29 @@ def test_a_frame_of_two_storeys_with_rigid_floors(tmp_path):
     squares = np.linalg.eigvals(np.linalg.solve(stiffness, mass)).real
     periods = 2.0 * np.pi * np.sqrt(np.sort(squares)[::-1][:4])
     np.testing.assert_allclose(periods, [0.2271, 0.2156, 0.0733, 0.0720], atol=5.1e-5)
+
+
+def test_areas_that_do_not_share_their_nodes_are_told(tmp_path):
+    """A panel of 2 x 1 beside two of 1 x 1: the corner between these lies on its side."""
+    places = {1: (0, 0, 0), 2: (2, 0, 0), 3: (2, 1, 0), 4: (0, 1, 0), 5: (1, 1, 0), 6: (0, 2, 0),
+              7: (1, 2, 0), 8: (2, 2, 0)}  # fmt: skip
+    corners = {1: (1, 2, 3, 4), 2: (4, 5, 7, 6), 3: (5, 3, 8, 7)}
+    text = written(
+        "N, m, C", joints(places), held([1, 2, 6, 8]), material(3e10, 2500.0),
+        table("AREA SECTION PROPERTIES",
+              dict(Section="S", Material="MAT", AreaType="Shell", Type="Shell-Thick", Thickness=0.2)),
+        table("CONNECTIVITY - AREA",
+              *(dict(Area=a, NumJoints=4, **{f"Joint{i}": j for i, j in enumerate(c, 1)})
+                for a, c in corners.items())),
+        table("AREA SECTION ASSIGNMENTS", *(dict(Area=a, Section="S") for a in corners)),
+    )  # fmt: skip
+    found = read(tmp_path, text)
+    assert found.problems == ()
+    assert any(
+        "meet at 1 places without sharing nodes, the first at (1, 1, 0)" in t for t in found.told
+    )
+    whole = text.replace(
+        "Joint=5   CoordSys=GLOBAL   CoordType=Cartesian   XorR=1   Y=1",
+        "Joint=5   CoordSys=GLOBAL   CoordType=Cartesian   XorR=1   Y=1.2",
+    ).replace("GlobalX=1   GlobalY=1 ", "GlobalX=1   GlobalY=1.2 ")
+    assert not any("without sharing" in t for t in read(tmp_path, whole).told)

@@ -18,7 +18,7 @@ from trundle.imports.sap_makes import AreaMake
 from trundle.imports.sap_tables import Row, Table
 from trundle.structure import OrthotropicSection, ShellGroup, TriangleGroup
 
-__all__ = ["Area", "areas_placed", "plates_of"]
+__all__ = ["Area", "areas_placed", "cracks", "plates_of"]
 
 _MERGED = 1e-5  # of the model's size: nodes of meshes nearer than that are one
 
@@ -95,6 +95,37 @@ def plates_of(areas: list[Area]) -> tuple[list[ShellGroup], list[TriangleGroup]]
         else:
             triangles.append(TriangleGroup(connectivity=elements, section=section, name=name))
     return shells, triangles
+
+
+def cracks(joints: Joints, areas: list[Area]) -> Float[Array, "n 3"]:
+    """Return where a corner of an area lies on the side of another that does not share it.
+
+    Parameters
+    ----------
+    joints : Joints
+        All nodes.
+    areas : list of Area
+        Meshed ones.
+    """
+    places, sides = np.array(joints.places), list[Array]()
+    for area in areas:
+        sides.append(
+            np.stack([area.elements, np.roll(area.elements, -1, axis=1)], axis=2).reshape(-1, 2)
+        )
+    if not sides:
+        return np.zeros((0, 3))
+    both, times = np.unique(np.sort(np.concatenate(sides), axis=1), axis=0, return_counts=True)
+    free = both[times == 1]
+    used = np.unique(free)
+    start, end = places[free[:, 0]], places[free[:, 1]]
+    length = np.linalg.norm(end - start, axis=1)
+    near = cKDTree(places[used]).query_ball_point(0.5 * (start + end), 0.5 * length * (1 - _MERGED))
+    edge = np.repeat(np.arange(len(free)), [len(one) for one in near])
+    node = used[np.concatenate([*near, []]).astype(int)]
+    along = (end - start)[edge] / length[edge, None]
+    gap = places[node] - start[edge]
+    off = np.linalg.norm(gap - np.sum(gap * along, axis=1)[:, None] * along, axis=1)
+    return places[np.unique(node[off < 1e-4 * length[edge]])]
 
 
 def _by_area(table: Table | None) -> dict[str, Row]:

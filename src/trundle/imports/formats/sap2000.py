@@ -10,10 +10,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 
+from trundle._typing import Array
 from trundle.errors import InputError, Problem
 from trundle.imports.model_format import Asked, ModelFormat, ReadModel
-from trundle.imports.sap_areas import areas_placed, plates_of
+from trundle.imports.sap_areas import areas_placed, cracks, plates_of
 from trundle.imports.sap_frames import beams_of, frames_placed
 from trundle.imports.sap_joints import constraints_of, joints_of, restraints_of, springs_of
 from trundle.imports.sap_makes import areas_of, frames_of, materials_of
@@ -23,7 +25,7 @@ from trundle.imports.unit_system import Units, agreed_units, in_si, units_of
 from trundle.structure import Floor, PointMasses
 from trundle.structure.elements import NodeInertia
 
-__all__ = ["FORMAT"]
+__all__ = ["FORMAT", "floor_of_tables", "where_apart"]
 
 _READ = {
     "PROGRAM CONTROL", "ACTIVE DEGREES OF FREEDOM", "JOINT COORDINATES",
@@ -73,7 +75,8 @@ def read(path: Path, asked: Asked) -> ReadModel:
                 structure=None, problems=tuple(_not_read(one) for one in wrong), files=(path,)
             )
         units, said = agreed_units(_stated(tables), asked.units)
-        floor = in_si(_floor(tables, units, path.stem), units)
+        floor, apart = floor_of_tables(tables, units, path.stem)
+        floor = in_si(floor, units)
     except InputError as error:
         problem = Problem(
             place=path.name, value="the model", rule=str(error), remedy="docs/models.md"
@@ -85,7 +88,23 @@ def read(path: Path, asked: Asked) -> ReadModel:
         for name, table in tables.items()
         if _is_read(name) and table.unused
     ]
+    if len(apart):
+        told.append(
+            f"{where_apart(apart)}: there they are apart, as in SAP2000 without constraints"
+        )
     return ReadModel(structure=floor, units=units, told=(*said, *told), files=(path,))
+
+
+def where_apart(places: Float[Array, "n 3"]) -> str:
+    """Say where areas meet without sharing nodes.
+
+    Parameters
+    ----------
+    places : ndarray of float, shape (n, 3)
+        In the file's units.
+    """
+    first = ", ".join(f"{value:.4g}" for value in places[0])
+    return f"areas meet at {len(places)} places without sharing nodes, the first at ({first})"
 
 
 def _is_read(name: str) -> bool:
@@ -113,8 +132,25 @@ def _stated(tables: Mapping[str, Table]) -> Units | None:
         raise InputError(f"{row.place}: {error}") from None
 
 
-def _floor(tables: Mapping[str, Table], units: Units, name: str) -> Floor:
-    """Return the structure, in the file's units."""
+def floor_of_tables(
+    tables: Mapping[str, Table], units: Units, name: str
+) -> tuple[Floor, Float[Array, "n 3"]]:
+    """Return the structure that tables hold, in their units, and where areas do not meet.
+
+    Parameters
+    ----------
+    tables : mapping of str to Table
+        By title.
+    units : Units
+        Theirs.
+    name : str
+        Of the structure.
+
+    Raises
+    ------
+    InputError
+        What is missing, or cannot be made of them.
+    """
 
     def table(title: str) -> Table:
         """Return a table, without rows where it is not there."""
@@ -138,7 +174,7 @@ def _floor(tables: Mapping[str, Table], units: Units, name: str) -> Floor:
     )
     shells, triangles = plates_of(areas)
     beams, released = beams_of(parts)
-    return Floor(
+    floor = Floor(
         nodes=np.array(joints.places),
         fixed=fixed,
         shells=tuple(shells),
@@ -149,6 +185,7 @@ def _floor(tables: Mapping[str, Table], units: Units, name: str) -> Floor:
         links=constraints_of(joints, fixed, tables),
         name=name,
     )
+    return floor, cracks(joints, areas)
 
 
 FORMAT = ModelFormat(

@@ -19,7 +19,6 @@ from trundle.structure import BeamGroup, Floor
 
 TEXT = (
     BUILDING.replace('f_max = "60 Hz"', 'f_max = "112 Hz"')
-    .replace('mesh_size = "1.5 m"', 'mesh_size = "1 m"')
     # no walls and hinges: a mesh of gmsh knows of neither
     .replace(BUILDING[BUILDING.index("[[building.wall]]") : BUILDING.index("[vehicle.car]")], "")
     .replace('hinged = "both"\n', "")

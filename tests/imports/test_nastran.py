@@ -323,6 +323,7 @@ def test_a_study_on_a_model_is_the_study_on_the_plan(tmp_path):
     assert (tmp_path / "out" / "figures" / "plan.png").stat().st_size > 5000
     assert (tmp_path / "out" / "figures" / "modes.png").exists()
     assert not (tmp_path / "out" / "figures" / "section.png").exists()
+    assert not (tmp_path / "out" / "figures" / "plan_1.png").exists()  # one surface
 
 
 def test_mistakes_of_a_model_stand_with_those_of_the_study(tmp_path):

@@ -20,7 +20,7 @@ from trundle.results.study_result import StudyResult
 from trundle.structure.building import Building, Column, Slab, Wall
 from trundle.study.model import Study
 
-__all__ = ["drawings"]
+__all__ = ["draw_route", "drawings", "storey_modes_figure"]
 
 _SLAB, _PANEL, _BEAM, _WALL, _COLUMN = "#E8E8E8", "#CFCFCF", "#9A9A9A", "#5A5A5A", "#222222"
 _MODES = 4  # drawn side by side
@@ -73,7 +73,7 @@ def storey_figure(study: Study, building: Building, name: str) -> Figure:
     for i, (route, drive) in enumerate(study.drives.items()):
         if drive.route.on in (name, None):
             line = study.in_plan(drive.route.points, drive.route.on)
-            _draw_route(axes, line, f"{route}, {in_kmh(float(drive.route.law.speed(0.0)))}", i)
+            draw_route(axes, line, f"{route}, {in_kmh(float(drive.route.law.speed(0.0)))}", i)
     for point, spot in study.points.items():
         if spot.on in (name, None):
             place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
@@ -212,7 +212,8 @@ def _draw_grid(axes: Axes, building: Building, low: Array, high: Array) -> None:
             )
 
 
-def _draw_route(axes: Axes, line: Array, name: str, i: int) -> None:
+def draw_route(axes: Axes, line: Array, name: str, i: int) -> None:
+    """Draw a route in plan with an arrow at its end, and its name along its longest leg."""
     colour = COLOURS[i % 6]
     axes.plot(*line.T, color=colour, linewidth=2.0, zorder=4)
     look = {"arrowstyle": "-|>", "color": colour, "linewidth": 2.0}

@@ -34,13 +34,13 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
     """
     study, modes = result.study, result.modes
     plan = study.plan
-    if study.building is None:
+    if plan is not None:
         yield Drawing(
             name="plan",
             title="Plan with routes and points",
             caption="Beams (grey), secondary beams (dashed), columns (squares), routes with their "
             "direction and speed, and the points where the response is read.",
-            draw=lambda: plan_figure(study),
+            draw=lambda: plan_figure(study, plan),
         )
     if plan is not None:
         yield Drawing(
@@ -56,7 +56,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         + _quality_words(study),
         draw=lambda: mesh_figure(study.floor),
     )
-    if modes is not None and study.building is None:
+    if modes is not None and plan is not None:
         yield Drawing(
             name="modes",
             title="First modes of the floor",
@@ -80,14 +80,11 @@ def _quality_words(study: Study) -> str:
     )
 
 
-def plan_figure(study: Study) -> Figure:
-    """Draw the plan with beams, columns, routes and points; of a model as it came, its mesh."""
+def plan_figure(study: Study, plan: FloorPlan) -> Figure:
+    """Draw the plan with beams, columns, routes and points."""
     (x0, x1), (y0, y1) = study.extent
     figure, (axes,) = new_figure(5.6, 1.2 + 5.0 * (y1 - y0) / (x1 - x0))
-    if study.plan is None:
-        _draw_outline(axes, study.floor)
-    else:
-        _draw_beams(axes, study.plan)
+    _draw_beams(axes, plan)
     for i, (name, route) in enumerate((n, d.route) for n, d in study.drives.items()):
         colour = COLOURS[i % 6]
         axes.plot(*route.points.T, color=colour, linewidth=2.0)
@@ -116,23 +113,11 @@ def plan_figure(study: Study) -> Figure:
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         axes.plot(*place, marker="X", markersize=9, color="black", linestyle="none")
         axes.annotate(name, place, xytext=(8, 6), textcoords="offset points", weight="bold")
-    if study.plan is not None:
-        _draw_edges(axes, study.plan)
+    _draw_edges(axes, plan)
     axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
     axes.set(xlim=(x0 - 3.0, x1 + 3.0), ylim=(y0 - 3.0, y1 + 3.0))
     axes.grid(visible=False)
     return figure
-
-
-def _draw_outline(axes: Axes, floor: Structure) -> None:
-    """Draw the outer edges of every surface: those that one element alone has."""
-    for surface in floor.surfaces.values():
-        flat = surface.frame.coordinates(surface.nodes)
-        for _, elements in surface.parts:
-            ends = np.stack([elements, np.roll(elements, -1, axis=1)], axis=2).reshape(-1, 2)
-            found, times = np.unique(np.sort(ends, axis=1), axis=0, return_counts=True)
-            for a, b in flat[found[times == 1]]:
-                axes.plot([a[0], b[0]], [a[1], b[1]], color="black", linewidth=1.0)
 
 
 def _draw_beams(axes: Axes, plan: FloorPlan) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from meshes import as_msh_4, plate_mesh
 from mode_tables import mode_tables
-from studies import GOOD
+from studies import GOOD, MAP
 from trundle import read_results
 from trundle import run_study as run_study_into
 from trundle.errors import StudyError
@@ -141,28 +141,47 @@ complete_to = "40 Hz"
 """
 
 
-def modes_study(tmp_path, building=MODES, change=("f_max", "f_max")):
-    (tmp_path / "plan.toml").write_text(GOOD)
+def modes_study(tmp_path, building=MODES, change=("f_max", "f_max"), more=""):
+    text = GOOD + more
+    (tmp_path / "plan.toml").write_text(text)
     plan = load_study(tmp_path / "plan.toml")
     mode_tables(tmp_path, build_floor(plan.plan, mesh_size=1.5), 40.0)
     path = tmp_path / "study.toml"
-    path.write_text((GOOD[:START] + building + GOOD[END:]).replace(*change))
+    path.write_text((text[:START] + building + text[END:]).replace(*change))
     return plan, path
+
+
+def bare(study):
+    """Return the methods of a study without the static rest of the modes left out."""
+    for method in study.methods:
+        integration = replace(method.interaction.integration, residual=False)
+        yield replace(method, interaction=replace(method.interaction, integration=integration))
+
+
+DECOUPLED = GOOD[GOOD.index("[[method]]") : GOOD.index("[criteria]")].replace(
+    "coupled", "decoupled"
+)
 
 
 @pytest.mark.slow
 def test_a_study_on_modes_alone_runs_and_says_what_is_missing(tmp_path):
     """The levels of the plan's own modes without their static rest; and that is what is told."""
-    plan, path = modes_study(tmp_path)
+    plan, path = modes_study(tmp_path, more="\n" + DECOUPLED + MAP)
     found = load_study(path)
     assert isinstance(found.floor, ModalModel)
     assert found.floor.moving_mass() is None
-    method = plan.methods[0]
-    bare = replace(method.interaction.integration, residual=False)
-    method = replace(method, interaction=replace(method.interaction, integration=bare))
-    both = [run_study(study) for study in (replace(plan, methods=(method,)), found)]
-    levels = [next(iter(one.cells.values())).rms_velocity for one in both]
-    np.testing.assert_allclose(levels[1], levels[0], rtol=1e-7)
+    both = [run_study(study) for study in (replace(plan, methods=tuple(bare(plan))), found)]
+    for key, cell in both[0].cells.items():
+        theirs = both[1].cells[key]
+        np.testing.assert_allclose(theirs.rms_velocity, cell.rms_velocity, rtol=1e-7)
+        assert (cell.exact is None) == (theirs.exact is None)
+        if cell.exact is not None:
+            for name, variance in cell.exact.variance.items():
+                np.testing.assert_allclose(theirs.exact.variance[name], variance, rtol=1e-7)
+    for key, one in both[0].maps.items():
+        np.testing.assert_allclose(both[1].maps[key].band_levels, one.band_levels, rtol=1e-7)
+    assert both[0].maps
+    assert len(both[0].cells) == 2
     told = " ".join(str(one) for some in both[1].warnings().values() for one in some)
     assert "not even statically" in told
     assert "follow the wheels" not in told
@@ -198,3 +217,25 @@ def test_motion_that_nobody_measured_is_no_motion(tmp_path):
     (tmp_path / "s.csv").write_text(shapes.replace("U1,", "V1,"))
     with pytest.raises(StudyError, match="nobody says how"):
         load_study(path)
+
+
+@pytest.mark.slow
+def test_a_deck_in_several_files_is_kept_whole(tmp_path):
+    """Results are read back where the deck no longer is: with the file that it includes."""
+    from trundle.exports import Subject, export
+
+    (tmp_path / "plan.toml").write_text(GOOD)
+    export(Subject(structure=load_study(tmp_path / "plan.toml").floor), tmp_path / "all.bdf")
+    head, mark, rest = (tmp_path / "all.bdf").read_text().partition("$ slab")
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "rest.inc").write_text(mark + rest.replace("ENDDATA\n", ""))
+    (tmp_path / "deck.bdf").write_text(head + "INCLUDE 'parts/rest.inc'\nENDDATA\n")
+    model = '[building]\nkind = "nastran"\nfile = "deck.bdf"\nunits = "N, m"\n\n'
+    (tmp_path / "study.toml").write_text(GOOD[:START] + model + GOOD[END:])
+    study = load_study(tmp_path / "study.toml")
+    assert list(study.files) == ["deck.bdf", "parts/rest.inc"]
+    run_study_into(study, tmp_path / "out")
+    (tmp_path / "deck.bdf").unlink()
+    (tmp_path / "parts" / "rest.inc").unlink()
+    again = read_results(tmp_path / "out").study
+    assert again.floor.content_hash == study.floor.content_hash

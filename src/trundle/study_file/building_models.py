@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import shutil
+import tempfile
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
@@ -224,15 +227,34 @@ def _with_one_file(
         ignore=frozenset() if isinstance(section, GmshSection) else frozenset(section.ignore),
         groups=groups,
     )
-    path = draft.files.get(section.file, draft.folder / section.file)
-    read, found = attempted(
-        "building.file", lambda: read_model(path, asked), "docs/models.md says what is read"
-    )
-    if read is None or read.structure is None:
-        return draft, found + ([] if read is None else list(read.problems))
-    if section.units is None and isinstance(read.structure, Floor):
-        found += _unlikely(read, read.structure)
-    return model_taken(draft, section.file, path, read), found
+    with _beside_each_other(draft, section.file) as path:
+        read, found = attempted(
+            "building.file", lambda: read_model(path, asked), "docs/models.md says what is read"
+        )
+        if read is None or read.structure is None:
+            return draft, found + ([] if read is None else list(read.problems))
+        if section.units is None and isinstance(read.structure, Floor):
+            found += _unlikely(read, read.structure)
+        return model_taken(draft, section.file, path, read), found
+
+
+@contextmanager
+def _beside_each_other(draft: Draft, name: str) -> Generator[Path]:
+    """Give where a model's file is, with those that it includes where it looks for them.
+
+    Results keep files under names of their own: such ones are laid out as they were.
+    """
+    if name not in draft.files:
+        yield draft.folder / name
+        return
+    with tempfile.TemporaryDirectory(prefix="trundle-") as folder:
+        home = Path(folder).resolve()
+        for other, kept in draft.files.items():
+            place = (home / other).resolve()
+            if place.is_relative_to(home):
+                place.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(kept, place)
+        yield home / name
 
 
 def _taken(draft: Draft, read: ReadModel, structure: Structure, kept: Mapping[str, bytes]) -> Draft:

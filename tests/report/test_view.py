@@ -10,8 +10,9 @@ import pytest
 
 from models import small_floor
 from studies import BUILDING, GOOD, run_main
-from trundle import study_from_text
+from trundle import load_study, run_study, study_from_text
 from trundle.report.pages.view import view_page, write_view
+from trundle.results.store import write_results
 from trundle.run.playback import playback_of
 from trundle.views.scene import scene_of
 from trundle.views.solids import moved, solids_of
@@ -153,7 +154,8 @@ def test_a_browser_draws_it_offline(tmp_path, monkeypatch, capsys):
 @pytest.mark.slow
 def test_models_and_results_are_looked_at_too(tmp_path, monkeypatch, capsys):
     (tmp_path / "s.toml").write_text(GOOD)
-    run_main(monkeypatch, capsys, "run", tmp_path / "s.toml", "--out", tmp_path / "r", "--quiet")
+    (tmp_path / "r").mkdir()
+    write_results(run_study(load_study(tmp_path / "s.toml")), tmp_path / "r")
     run_main(monkeypatch, capsys, "export", tmp_path / "s.toml", tmp_path / "m.bdf")
     for source, more in ((tmp_path / "r", ()), (tmp_path / "m.bdf", ("--f-max", "20 Hz"))):
         page = tmp_path / f"{source.stem}.html"

@@ -120,6 +120,8 @@ OLD = as_msh_2(*plate_mesh(2, 2))
         (GOOD.replace("3.0 2.0 0.0", "3.0 nan 0.0"), "is not finite"),
         (GOOD.replace("2 21 3 4", "2 21 10 4"), "quadrilaterals of second order are not read"),
         (GOOD.replace("\n1 1 4 5 2 \n", "\n1 1 4 5 77 \n"), "names node 77, which is not there"),
+        (GOOD.replace("2 21 3 4", "2 21 nan 4"), "is damaged"),
+        (GOOD.replace("3.0 2.0 0.0", "1e300 2.0 0.0"), "further than 100 km away"),
         (GOOD.replace('"beam"', '"girder"'), "nothing says what 'girder' of the mesh is"),
         (GOOD.replace("$Nodes", "$Nods").replace("$EndNodes", "$EndNods"), "$Nods is not read"),
         (GOOD.replace("$EndNodes\n", ""), "$Elements ends or begins in another section"),

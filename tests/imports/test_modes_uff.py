@@ -121,6 +121,14 @@ TURNED = NODES.replace(f"{2:10d}{0:10d}{0:10d}", f"{2:10d}{0:10d}{3:10d}")
         (NODES + normal(1, 5.0, 1.0, [0.0] * 4), "no node's vertical motion is known"),
         (NODES + MODES[:-200], "cut short"),
         ("hello\n", "is no universal file"),
+        (
+            NODES + MODES.replace(f"{2:10d}\n{0.0:13.5e}", f"{1:10d}\n{0.0:13.5e}", 1),
+            "known in some modes and not in others",
+        ),
+        (
+            NODES.replace(f"{2:10d}{0:10d}{0:10d}", f"{2:10d}{4:10d}{0:10d}") + MODES,
+            "is placed in a",
+        ),
         (NODES + MODES.replace(f"{1.0:13.5e}", "  1.0000a+00 "), "is a damaged universal file"),
     ],
 )

@@ -196,15 +196,15 @@ def test_floors_move_as_one_in_their_planes(tmp_path):
     np.testing.assert_allclose(omega, np.sqrt(np.sort(squares)), rtol=2e-3)
 
 
-def test_a_slab_is_meshed_as_it_says(tmp_path):
-    """Simply supported, 16 x 12 intervals, thin: Navier's frequency; units of kN and mm."""
+def slab(*more):
+    """Return a simply supported slab of 6 x 4 m in 16 x 12 intervals, in kN and mm."""
     a, b, t, e, rho = 6000.0, 4000.0, 150.0, 30.0, 2.5e-12  # kN, mm: mass in kN s2/mm
     places = {1: (0.0, 0.0, 0.0), 2: (a, 0.0, 0.0), 3: (a, b, 0.0), 4: (0.0, b, 0.0)}
     places |= {5 + i: (a * (i + 1) / 16, 0.0, 0.0) for i in range(15)}
     places |= {20 + i: (a * (i + 1) / 16, b, 0.0) for i in range(15)}
     places |= {35 + i: (0.0, b * (i + 1) / 12, 0.0) for i in range(11)}
     places |= {46 + i: (a, b * (i + 1) / 12, 0.0) for i in range(11)}
-    text = written(
+    return written(
         "KN, mm, C", joints(places), held(places, "111000"), material(e, rho, 2.45e-8),
         table("AREA SECTION PROPERTIES",
               dict(Section="SLAB", Material="MAT", MatAngle=0, AreaType="Shell", Type="Shell-Thin",
@@ -214,7 +214,13 @@ def test_a_slab_is_meshed_as_it_says(tmp_path):
         table("AREA SECTION ASSIGNMENTS", dict(Area=1, Section="SLAB", MatProp="Default")),
         table("AREA AUTO MESH ASSIGNMENTS",
               dict(Area=1, MeshType="Num Intervals", Number1=16, Number2=12)),
+        *more,
     )  # fmt: skip
+
+
+def test_a_slab_is_meshed_as_it_says(tmp_path):
+    """Simply supported, 16 x 12 intervals, thin: Navier's frequency; units of kN and mm."""
+    text = slab()
     found = read(tmp_path, text)
     assert found.problems == ()
     floor = found.structure
@@ -463,11 +469,105 @@ def test_areas_that_do_not_share_their_nodes_are_told(tmp_path):
     )  # fmt: skip
     found = read(tmp_path, text)
     assert found.problems == ()
-    assert any(
-        "meet at 1 places without sharing nodes, the first at (1, 1, 0)" in t for t in found.told
-    )
+    assert any("meet at 1 places without sharing nodes: (1, 1, 0)" in t for t in found.told)
     whole = text.replace(
         "Joint=5   CoordSys=GLOBAL   CoordType=Cartesian   XorR=1   Y=1",
         "Joint=5   CoordSys=GLOBAL   CoordType=Cartesian   XorR=1   Y=1.2",
     ).replace("GlobalX=1   GlobalY=1 ", "GlobalX=1   GlobalY=1.2 ")
     assert not any("without sharing" in t for t in read(tmp_path, whole).told)
+
+
+def test_modifiers_of_areas_and_frames_count(tmp_path):
+    """A quarter of the stiffness in bending is half the frequency; of the mass, twice it."""
+    quarter = dict(Area=1, f11=1, f22=1, f12=1, m11=0.25, m22=0.25, m12=0.25, v13=1, v23=1,
+                   MassMod=1, WeightMod=1)  # fmt: skip
+    first = read(tmp_path, slab()).structure.modes(30.0).frequencies[0]
+    softer = read(tmp_path, slab(table("AREA STIFFNESS MODIFIERS", quarter))).structure
+    assert softer.modes(30.0).frequencies[0] == pytest.approx(0.5 * first, rel=1e-3)
+    whole = bending(8.0, 4.730041)
+    by = dict(
+        Frame=2, AMod=1, AS2Mod=1, AS3Mod=1, JMod=1, I22Mod=1, I33Mod=0.25, MassMod=1, WeightMod=1
+    )
+    text = portal(table("FRAME PROPERTY MODIFIERS", by))
+    assert first_of(tmp_path, text) == pytest.approx(0.5 * whole, rel=4e-3)
+    heavy = portal(table("FRAME PROPERTY MODIFIERS", {**by, "I33Mod": 1, "MassMod": 4}))
+    assert first_of(tmp_path, heavy) == pytest.approx(0.5 * whole, rel=4e-3)
+
+
+POINT = dict(Frame=2, CardinalPt="8 (top center)", Mirror2="No", Mirror3="No", CoordSys="Local")
+
+
+@pytest.mark.parametrize(
+    ("row", "offset"),
+    [
+        ({**POINT, "Transform": "Yes"}, -0.2),
+        ({**POINT, "Transform": "No"}, 0.0),
+        ({**POINT, "Mirror3": "Yes", "Transform": "Yes"}, 0.2),
+        ({**POINT, "JtOffsetYI": 0.05, "JtOffsetYJ": 0.05, "Transform": "Yes"}, -0.15),
+    ],
+)
+def test_insertion_points_by_the_keys_of_later_versions(tmp_path, row, offset):
+    text = portal(table("FRAME INSERTION POINT ASSIGNMENTS", row))
+    beam = next(b for b in read(tmp_path, text).structure.beams if b.name == "BEAM")
+    np.testing.assert_allclose(beam.offset, [0.0, 0.0, offset], atol=1e-12)
+
+
+def test_what_holds_nothing_and_what_is_not_used_does_no_harm(tmp_path):
+    """Load transfer, definitions alone, a section that nothing uses, edges that are not tied."""
+    own = first_of(tmp_path, portal())
+    more = (
+        table("FRAME LOAD TRANSFER OPTIONS", dict(Frame=1, Transfer="Yes")),
+        table("LINK PROPERTY DEFINITIONS 01 - GENERAL", dict(Link="LIN1", LinkType="Linear")),
+        table("FRAME SECTION PROPERTIES 01 - GENERAL", section("TAPER", 1.0, 1.0, 1.0)).replace(
+            "Rectangular", "Nonprismatic"
+        ),
+    )
+    assert first_of(tmp_path, portal(*more)) == pytest.approx(own, rel=1e-12)
+    untied = table("AREA EDGE CONSTRAINT ASSIGNMENTS", dict(Area=1, Constrained="No"))
+    assert read(tmp_path, slab(untied)).problems == ()
+    assert read(tmp_path, slab(untied.replace("=No", "=Yes"))).structure is None
+
+
+LOADED = table(
+    "MASS SOURCE",
+    dict(
+        MassSource="M",
+        Elements="Yes",
+        Masses="Yes",
+        Loads="Yes",
+        IsDefault="Yes",
+        LoadPat="L",
+        Multiplier=1,
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (portal().replace("AnalSect=BEAM   MatProp=Default", "AnalSect=BEAM   MatProp=C60"), "MatProp"),
+        (portal().replace("TorsConst=1.0", "TorsConst=1.0   I23=0.1", 1), "I23 is not 0"),
+        (slab().replace("Number1=16", "SuppEdge=Yes   Number1=16"), "SuppEdge is not read"),
+        (slab().replace("Number1=16   ", ""), "Number1 is missing"),
+        (slab().replace("Type=Shell-Thin", "Type=Plate-Thin"), "Plate-Thin, is not read"),
+        (slab(table("AREA OVERWRITES - JOINT OFFSETS", dict(Area=1, Offset1=5))), "OVERWRITES"),
+        (portal(table("FRAME P-DELTA FORCE ASSIGNMENTS", dict(Frame=1, P=1))), "P-DELTA"),
+        (portal(table("FRAME ADDED MASS ASSIGNMENTS", dict(Frame=99, MassPerLen=1))), "names frame '99'"),
+        (portal(releases=dict(Frame=2, M9I="Yes")), "m9i is not known"),
+        (portal().replace("R3=Yes", "RR3=Yes"), "rr3 is not known"),
+        (portal(frames({2: (1, 4)})), "frame '2' is there twice"),
+        (portal().replace("E1=2", "E1=3   E1=2"), "E1 is there twice"),
+        (portal(table("FRAME OFFSET (LENGTH) ASSIGNMENTS",
+                      dict(Frame=2, Type="Auto From Connectivity", RigidFactor=1))), "without their lengths"),
+        (portal(table("FRAME OFFSET (LENGTH) ASSIGNMENTS",
+                      dict(Frame=2, Type="User", LengthI=1, LengthJ=1))), "RigidFact is missing"),
+        (portal(table("MASSES 1 - MASS SOURCE", dict(MassFrom="All"))), "'all' is not known"),
+        (portal(LOADED, table("FRAME LOADS - DISTRIBUTED", dict(
+            Frame=2, LoadPat="L", CoordSys="Local", Dir=2, FOverLA=-4, FOverLB=-4))), "not read as mass"),
+        (portal().replace("I33=0.0002", "I33=1e300"), "out of all bounds"),
+    ],
+)  # fmt: skip
+def test_what_would_change_the_structure_is_not_passed_over(tmp_path, text, words):
+    found = read(tmp_path, text)
+    assert found.structure is None
+    assert words in str(found.problems[0])

@@ -53,15 +53,15 @@ def _material_row(rows: Rows, one: Statement, name: str) -> None:
     if not rows.once("MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES", name):
         return
     keys = rows.properties.get(f"material {name}")
-    if keys is None or "E" not in keys:
-        raise InputError(f"{one.place}: material {name!r} is not there, or has no modulus E")
+    if keys is None or not {"E", "U"} <= keys.keys():
+        raise InputError(f"{one.place}: material {name!r} is not there, or has no E and U")
     if keys.get("SYMTYPE", keys.get("TYPE", "ISOTROPIC")).upper() in {"ORTHOTROPIC", "ANISOTROPIC"}:
         raise InputError(f"{one.place}: material {name!r} is not isotropic")
     weight = number_of(one, keys.get("WEIGHTPERVOLUME", keys.get("W", "0")))
     mass = number_of(one, keys["M"]) if "M" in keys else weight / rows.gravity
     rows.row(
         "MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES", one.place, Material=name,
-        E1=keys["E"], U12=keys.get("U", "0.2"), UnitMass=mass, UnitWeight=weight,
+        E1=keys["E"], U12=keys["U"], UnitMass=mass, UnitWeight=weight,
     )  # fmt: skip
 
 
@@ -112,19 +112,19 @@ def _profile(one: Statement, name: str, keys: Mapping[str, str]) -> Profile:
                 raise InputError(f"{one.place}: section {name!r} ({shape}) has no {key}")
             yield number_of(one, keys[key])
 
-    if "RECTANG" in shape and "TUBE" not in shape:
+    if shape in {"RECTANGULAR", "CONCRETE RECTANGULAR", "RECTANGLE"}:
         depth, width = sizes("D", "B")
         return Profile.rectangle(width=width, depth=depth, material=STEEL)
-    if "CIRCLE" in shape:
+    if shape in {"CIRCLE", "CONCRETE CIRCLE"}:
         (diameter,) = sizes("D")
         return Profile.circle(diameter=diameter, material=STEEL)
-    if "PIPE" in shape:
+    if shape in {"PIPE", "STEEL PIPE"}:
         diameter, wall = sizes("D", "T" if "T" in keys else "TW")
         return Profile.tube(diameter=diameter, wall=wall, material=STEEL)
-    if "TUBE" in shape or "BOX" in shape:
+    if shape in {"BOX/TUBE", "STEEL TUBE", "TUBE"}:
         depth, width, flange, web = sizes("D", "B", "TF", "TW")
         return Profile.box(depth=depth, width=width, web=web, flange=flange, material=STEEL)
-    if "WIDE FLANGE" in shape or shape.startswith("I"):
+    if shape in {"I/WIDE FLANGE", "STEEL I/WIDE FLANGE"}:
         depth, width, flange, web = sizes("D", "B", "TF", "TW")
         return Profile.i(depth=depth, width=width, web=web, flange=flange, material=STEEL)
     raise InputError(

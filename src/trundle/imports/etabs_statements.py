@@ -9,9 +9,28 @@ from pathlib import Path
 
 from trundle.errors import InputError
 
-__all__ = ["Statement", "number_of", "statements_of"]
+__all__ = ["HOLDS_NOTHING", "Statement", "number_of", "statements_of"]
 
 _WORD = re.compile(r'"((?:[^"]|"")*)"|(\S+)')
+
+
+HOLDS_NOTHING = re.compile(
+    "^("
+    + "|".join(
+        (
+            "PROGRAM", "TITLE", "PREFERENCE", "RLLF", "GRID", "GENGRID", "COORDSYSTEM", "GROUP",
+            "REFERENCEPOINT", "LOAD", "COMBO", "FUNCTION", "FUNC", "POINTLOAD", "LINELOAD",
+            "AREALOAD", "SEISMIC", "WIND", "SPEC", "HIST", "STATIC", "MODALCASE", "PIERNAME",
+            "SPANDRELNAME", "CONCRETE", "STEEL", "COMPOSITE", "WALL.*DESIGN", "SLAB.*DESIGN",
+            "DESIGN", "DIMENSIONLINE", "DEVELOPEDELEV", "TABLESET", "LOGCOMMENT", "REBAR",
+            "ENDOFFILE", "END", "LINKPROP", "TENDONPROP", "HINGE", "TOWER", "PROJECT", "COMPANY",
+            "DEFAULT", "OUTPUT", "REPORT", "SECTIONCUT", "MERGETOL", "GLOBALX", "UNIFORMLOADSET",
+            "AUTO",
+        )
+    )
+    + ")"
+)  # fmt: skip
+"""Statements that hold nothing of the structure: drawing, loads, cases, design, output."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,10 +51,35 @@ class Statement:
     words: tuple[str, ...]
     place: str
 
-    def keys(self, first: int) -> dict[str, str]:
-        """Return the pairs of key and value from a word on."""
+    def keys(self, first: int, known: str | None = None) -> dict[str, str]:
+        """Return the pairs of key and value from a word on.
+
+        Parameters
+        ----------
+        first : int
+            Number of the first key among the words.
+        known : str, optional
+            Pattern of the keys that are read or of no matter; all, unless given.
+
+        Raises
+        ------
+        InputError
+            A key that is not known or stands twice, or a key without a value.
+        """
         rest = self.words[first:]
-        return {k.upper(): v for k, v in zip(rest[::2], rest[1::2], strict=False)}
+        found = {k.upper(): v for k, v in zip(rest[::2], rest[1::2], strict=False)}
+        if len(rest) % 2 or 2 * len(found) < len(rest):
+            raise InputError(f"{self.place}: must be keys with values, each once")
+        odd = [k for k in found if known is not None and not re.fullmatch(known, k)]
+        if odd:
+            raise InputError(f"{self.place}: {odd[0]} of a {self.words[0]} is not read")
+        return found
+
+    def word(self, number: int) -> str:
+        """Return a word that must be there."""
+        if number >= len(self.words):
+            raise InputError(f"{self.place}: {self.words[0]} ends too early")
+        return self.words[number]
 
 
 def statements_of(path: Path) -> list[Statement]:

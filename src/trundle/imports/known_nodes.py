@@ -13,6 +13,7 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.imports.number_tables import NumberTable, read_table
 from trundle.structure import FaceGroup
+from trundle.units import to_si
 
 __all__ = ["DOFS", "NODE", "NodeTable", "faces_of", "read_nodes"]
 
@@ -86,6 +87,8 @@ def read_nodes(table: NumberTable, length: float) -> NodeTable:
         Columns that are missing, or a node at two places.
     """
     labels = table.labels(NODE)
+    for axis in "xyz":
+        _check_unit(table, axis, length)
     places = length * np.column_stack([table.need((axis,)) for axis in "xyz"])
     unique, first, which = np.unique(labels, return_index=True, return_inverse=True)
     apart = np.abs(places - places[first][which]).max(axis=1)
@@ -97,6 +100,15 @@ def read_nodes(table: NumberTable, length: float) -> NodeTable:
     order = np.argsort(first, kind="stable")
     first = first[order]
     return NodeTable(labels=unique[order], places=places[first], name=table.name)
+
+
+def _check_unit(table: NumberTable, axis: str, length: float) -> None:
+    """Refuse places whose heading names another unit than the model's."""
+    unit = table.unit_of((axis,))
+    if unit in {"", "text", "unitless"}:
+        return
+    if abs(to_si(f"1 {unit}", "length") / length - 1.0) > 1e-9:
+        raise InputError(f"{table.name}: {axis} is in {unit!r}, and the model's units are others")
 
 
 def faces_of(

@@ -6,15 +6,17 @@ Reference: R. F. Boisvert, R. Pozo, K. A. Remington, The Matrix Market exchange 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 from scipy import sparse
-from scipy.io import mmread
 
 from trundle._typing import Array, SparseMatrix
 from trundle.errors import InputError, Problem
+from trundle.imports.guard import guarded
 from trundle.imports.known_nodes import DOFS, faces_of, read_nodes
 from trundle.imports.model_format import ReadModel
 from trundle.imports.number_tables import NumberTable, read_table
@@ -24,7 +26,8 @@ from trundle.structure import MatrixModel
 
 __all__ = ["read_matrices"]
 
-_LARGEST = 8_000_000_000  # bytes
+_LARGEST = 2_000_000_000  # bytes
+_MOST = 10_000_000  # rows
 _UNEVEN = 1e-6  # of the largest entry, by which a matrix may differ from its transpose
 
 
@@ -56,7 +59,8 @@ def read_matrices(
     """
     files = tuple(path for path in (nodes, stiffness, mass, elements) if path is not None)
     try:
-        k, m = _matrix(stiffness), _matrix(mass)
+        with guarded(stiffness.name):
+            k, m = _matrix(stiffness), _matrix(mass)
         if k.shape != m.shape:
             raise InputError(
                 f"{stiffness.name} has {k.shape[0]} rows, and {mass.name} {m.shape[0]}"
@@ -101,19 +105,9 @@ def _matrix(path: Path) -> SparseMatrix:
             raise InputError(f"{path}: no such file")
         if path.stat().st_size > _LARGEST:
             raise InputError(f"{path}: a matrix may have {_LARGEST / 1e9:g} GB")
-        with path.open("rb") as opened:
-            if not opened.read(14).startswith(b"%%MatrixMarket"):
-                raise InputError(f"{path.name}, line 1: must begin with %%MatrixMarket")
-        found = sparse.csc_array(mmread(path, spmatrix=False))
+        found = _entries(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from None
-    except (ValueError, OverflowError, TypeError) as error:
-        raise InputError(f"{path.name}: is no matrix that can be read ({error})") from None
-    if found.dtype.kind not in "fi":
-        raise InputError(f"{path.name}: must be a real matrix")
-    found = found.astype(float)
-    if found.shape[0] != found.shape[1]:
-        raise InputError(f"{path.name}: must be square; it is {found.shape}")
     if not np.isfinite(found.data).all():
         raise InputError(f"{path.name}: holds a number that is not finite")
     uneven = float(abs(found - found.T).max())
@@ -123,6 +117,63 @@ def _matrix(path: Path) -> SparseMatrix:
             "one half was written, say 'symmetric' in its first line"
         )
     return sparse.csc_array(0.5 * (found + found.T))
+
+
+def _size(opened: TextIO, name: str) -> tuple[int, int, str]:
+    """Read the header of a matrix; return its rows, its entries, and its symmetry."""
+    words = opened.readline().split()
+    if not words or words[0] != "%%MatrixMarket":
+        raise InputError(f"{name}, line 1: must begin with %%MatrixMarket")
+    if [w.lower() for w in words[1:3]] != ["matrix", "coordinate"] or len(words) != 5:
+        raise InputError(f"{name}, line 1: a matrix in coordinates is read")
+    kind, symmetry = (word.lower() for word in words[3:])
+    if kind not in {"real", "integer"}:
+        raise InputError(f"{name}, line 1: must be a real matrix; it is {kind}")
+    if symmetry not in {"symmetric", "general"}:
+        raise InputError(f"{name}, line 1: must be symmetric or general; it is {symmetry}")
+    number, line = 1, "%"
+    while line.startswith("%") or not line.strip():
+        number, line = number + 1, opened.readline()
+        if not line:
+            raise InputError(f"{name}: ends before its size")
+    size = line.split()
+    if len(size) != 3 or not all(word.isdigit() for word in size):
+        raise InputError(f"{name}, line {number}: must be rows, columns and entries")
+    n_rows, n_columns, n = map(int, size)
+    if n_rows != n_columns:
+        raise InputError(f"{name}: must be square; it is {n_rows} by {n_columns}")
+    if not 0 < n_rows <= _MOST or n > 20 * _MOST:
+        raise InputError(f"{name}: must have 1 to {_MOST:g} rows; it has {n_rows}")
+    return n_rows, n, symmetry
+
+
+def _entries(path: Path) -> SparseMatrix:
+    """Read the entries of a matrix: a row, a column and a number a line, and nothing else."""
+    import pandas as pd  # noqa: PLC0415 - a quarter of a second, for tables alone
+
+    with path.open(encoding="utf-8", errors="replace") as opened:
+        n_rows, n, symmetry = _size(opened, path.name)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                table = pd.read_csv(
+                    opened, sep=r"\s+", header=None, index_col=False, names=["i", "j", "value"],
+                    dtype={"i": "int64", "j": "int64", "value": "float64"}, na_filter=False,
+                    comment="%",
+                )  # fmt: skip
+        except (ValueError, Warning) as error:
+            raise InputError(
+                f"{path.name}: is no matrix that can be read ({str(error)[:120]})"
+            ) from None
+    if len(table) != n:
+        raise InputError(f"{path.name}: is no matrix that can be read: {len(table)} of {n} entries")
+    i, j = table["i"].to_numpy() - 1, table["j"].to_numpy() - 1
+    if n and (min(i.min(), j.min()) < 0 or max(i.max(), j.max()) >= n_rows):
+        raise InputError(f"{path.name}: an entry lies outside its {n_rows} rows")
+    found = sparse.csc_array((table["value"].to_numpy(), (i, j)), shape=(n_rows, n_rows))
+    if symmetry == "symmetric":
+        found = found + sparse.tril(found, -1).T + sparse.triu(found, 1).T
+    return sparse.csc_array(found)
 
 
 def _rows(table: NumberTable, n_rows: int) -> Array:
@@ -173,7 +224,18 @@ def _scaled(matrix: SparseMatrix, scale: Array, unit: float) -> SparseMatrix:
 
 
 def _positive(matrix: SparseMatrix, name: str) -> SparseMatrix:
-    if matrix.diagonal().min() < 0.0:
-        row = int(matrix.diagonal().argmin()) + 1
+    diagonal = matrix.diagonal()
+    if diagonal.min() < 0.0:
+        row = int(diagonal.argmin()) + 1
         raise InputError(f"{name}: row {row} has a diagonal below 0")
+    if not diagonal.max() > 0.0:
+        raise InputError(f"{name}: has no entry on its diagonal")
+    root = np.sqrt(diagonal)
+    entries = matrix.tocoo()
+    over = (
+        np.abs(entries.data) > (1.0 + _UNEVEN) * root[entries.coords[0]] * root[entries.coords[1]]
+    )
+    if over.any():  # no such matrix is positive semidefinite
+        row, column = (int(one[over][0]) + 1 for one in entries.coords)
+        raise InputError(f"{name}: entry ({row}, {column}) is larger than its diagonals allow")
     return matrix

@@ -14,6 +14,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import InputError, Problem
+from trundle.imports.guard import guarded
 from trundle.imports.known_nodes import DOFS, NODE, NodeTable, faces_of, read_nodes
 from trundle.imports.model_format import ReadModel
 from trundle.imports.number_tables import NumberTable, read_table
@@ -26,6 +27,7 @@ __all__ = ["GivenModes", "ModeFiles", "given_modes_of", "modal_model", "read_mod
 MODE = ("mode", "stepnum", "mode_number", "mode_no", "step")
 FREQUENCY = ("frequency", "freq", "f", "frequency_hz", "hz")
 MASS = ("modal_mass", "generalized_mass", "generalised_mass", "gen_mass", "modalmass")
+_HERTZ = {"", "hz", "1/s", "cyc/sec", "cycles/s", "cps", "s-1"}
 _ABOVE = 1e-9  # relative, by which modes reach beyond the last of them
 
 
@@ -97,14 +99,15 @@ def read_modes(
     named = (files.frequencies, files.shapes, files.nodes, files.elements)
     read = tuple(path for path in named if path is not None)
     try:
-        shapes = read_table(files.shapes)
-        where = shapes if files.nodes is None else read_table(files.nodes)
-        nodes = read_nodes(where, units.length)
-        given = given_modes_of(read_table(files.frequencies), shapes, nodes)
-        model, told = modal_model(
-            given, nodes, units=units, unit_mass=unit_mass, reach=reach, surfaces=surfaces,
-            elements=files.elements, name=files.shapes.stem,
-        )  # fmt: skip
+        with guarded(files.shapes.name):
+            shapes = read_table(files.shapes)
+            where = shapes if files.nodes is None else read_table(files.nodes)
+            nodes = read_nodes(where, units.length)
+            given = given_modes_of(read_table(files.frequencies), shapes, nodes)
+            model, told = modal_model(
+                given, nodes, units=units, unit_mass=unit_mass, reach=reach, surfaces=surfaces,
+                elements=files.elements, name=files.shapes.stem,
+            )  # fmt: skip
     except InputError as error:
         problem = Problem(
             place=files.shapes.name, value="the modes", rule=str(error), remedy="docs/models.md"
@@ -133,6 +136,8 @@ def given_modes_of(frequencies: NumberTable, shapes: NumberTable, nodes: NodeTab
     if len(np.unique(numbers)) < len(numbers):
         raise InputError(f"{frequencies.name}: a mode stands in it twice")
     found = frequencies.need(FREQUENCY)
+    if (unit := frequencies.unit_of(FREQUENCY)) not in _HERTZ:
+        raise InputError(f"{frequencies.name}: frequencies are read in Hz; these are in {unit!r}")
     masses = frequencies.find(MASS)
     if masses is not None and not np.all(masses > 0.0):
         row = frequencies.lines[np.flatnonzero(~(masses > 0.0))[0]]

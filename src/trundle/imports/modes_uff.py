@@ -15,6 +15,7 @@ import numpy as np
 
 from trundle._typing import Array
 from trundle.errors import InputError, Problem
+from trundle.imports.guard import guarded
 from trundle.imports.known_nodes import NodeTable, read_nodes
 from trundle.imports.model_format import ReadModel
 from trundle.imports.modes import GivenModes, modal_model
@@ -66,19 +67,20 @@ def read_universal_modes(
     """
     files = tuple(one for one in (path, nodes, elements) if one is not None)
     try:
-        sets = _sets(path)
-        taken, said = agreed_units(_stated(sets), units)
-        where = (
-            _nodes(sets, path, taken)
-            if nodes is None
-            else read_nodes(read_table(nodes), taken.length)
-        )
-        given, more = _modes(sets, where, path)
-        faces = _faces(sets, where, given) if elements is None else ()
-        model, told = modal_model(
-            given, where, units=taken, unit_mass=unit_mass, reach=reach, surfaces=surfaces,
-            elements=elements, name=path.stem, faces=faces,
-        )  # fmt: skip
+        with guarded(path.name):
+            sets = _sets(path)
+            taken, said = agreed_units(_stated(sets), units)
+            where = (
+                _nodes(sets, path, taken)
+                if nodes is None
+                else read_nodes(read_table(nodes), taken.length)
+            )
+            given, more = _modes(sets, where, path)
+            faces = _faces(sets, where, given) if elements is None else ()
+            model, told = modal_model(
+                given, where, units=taken, unit_mass=unit_mass, reach=reach, surfaces=surfaces,
+                elements=elements, name=path.stem, faces=faces,
+            )  # fmt: skip
     except InputError as error:
         problem = Problem(
             place=path.name, value="the modes", rule=str(error), remedy="docs/models.md"
@@ -139,6 +141,12 @@ def _nodes(sets: Sequence[dict[str, Any]], path: Path, units: Units) -> NodeTabl
         raise InputError(
             f"node {node:.0f} moves in a system of its own ({turned[turned != 0][0]:.0f}), which "
             "is not read: export shapes in the global system"
+        )
+    own = np.concatenate([np.asarray(one["def_cs"]) for one in some])
+    if np.any(own > 1):  # 0 and 1 are the global system
+        raise InputError(
+            f"node {labels[np.flatnonzero(own > 1)[0]]:.0f} is placed in a system of its own "
+            f"({own[own > 1][0]:.0f}), which is not read: export places in the global system"
         )
     names = np.array([str(int(one)) for one in labels])
     if len(set(names.tolist())) < len(names):

@@ -14,6 +14,7 @@ __all__ = ["Card", "cards_of", "case_control", "real", "whole"]
 
 _REAL = re.compile(r"^([+-]?(?:\d+\.?\d*|\.\d+))(?:[ED]?([+-]?\d+))?$", re.IGNORECASE)
 _DEEPEST = 8  # files that include each other
+_FILES = 1000  # that are included, however often
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,8 +80,16 @@ def case_control(path: Path) -> dict[str, int]:
     for line in _opened(path):
         if re.match(r"\s*BEGIN\s+BULK", line, re.IGNORECASE):
             return found
-        if asked := re.match(r"\s*(SPC|MPC|METHOD)\s*=\s*(\d+)\s*$", line, re.IGNORECASE):
-            found[asked[1].upper()] = int(asked[2])
+        plain = line.partition("$")[0]
+        if asked := re.match(r"\s*(SPC|MPC)\s*=\s*(\S*)", plain, re.IGNORECASE):
+            name, number = asked[1].upper(), asked[2]
+            if not number.isdigit():
+                raise InputError(f"{path.name}: case control asks for {name} = {number!r}")
+            if found.get(name, int(number)) != int(number):
+                raise InputError(
+                    f"{path.name}: subcases ask for {name} {found[name]} and {number}: leave one"
+                )
+            found[name] = int(number)
     return found
 
 
@@ -105,7 +114,7 @@ def cards_of(path: Path, files: dict[Path, None] | None = None) -> Iterator[Card
         A file that cannot be read, or files that include each other.
     """
     open_card: list[tuple[list[str], str]] = []
-    for place, line in _lines(path, path.parent.resolve(), {} if files is None else files):
+    for place, line in _lines(path, path.parent.resolve(), {} if files is None else files, []):
         fields, continues = _fields(line)
         if continues:
             if not open_card:
@@ -134,12 +143,15 @@ def _opened(path: Path) -> Iterator[str]:
 
 
 def _lines(
-    path: Path, folder: Path, files: dict[Path, None], depth: int = 0
+    path: Path, folder: Path, files: dict[Path, None], begun: list[Path], depth: int = 0
 ) -> Iterator[tuple[str, str]]:
     """Give lines of bulk data with their place, without comments."""
     if depth > _DEEPEST:
         raise InputError(f"{path}: files include each other, or {_DEEPEST} deep")
     files[path] = None
+    begun.append(path)
+    if len(begun) > _FILES:
+        raise InputError(f"{path}: more than {_FILES} files are included")
     begins = re.compile(r"\s*BEGIN\s+BULK", re.IGNORECASE)
     start = next((i for i, line in enumerate(_opened(path), 1) if begins.match(line)), 0)
     for number, line in enumerate(_opened(path), 1):
@@ -157,7 +169,7 @@ def _lines(
             if not inner.is_file():  # a card like any other, so that the rest is told too
                 yield f"{path.name}, line {number}", f"INCLUDE,{named[1].strip()}"
                 continue
-            yield from _lines(inner, folder, files, depth + 1)
+            yield from _lines(inner, folder, files, begun, depth + 1)
             continue
         yield f"{path.name}, line {number}", plain
 

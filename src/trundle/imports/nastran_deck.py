@@ -144,7 +144,7 @@ class Deck:
     faces: list[Face] = field(default_factory=list)
     bars: list[Member] = field(default_factory=list)
     springs: list[Spring] = field(default_factory=list)
-    rigid: list[tuple[int, tuple[int, ...], str, str]] = field(default_factory=list)
+    rigid: list[tuple[int, tuple[range, ...], str, str]] = field(default_factory=list)
     masses: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)
     supports: dict[int, list[tuple[range, str]]] = field(default_factory=lambda: defaultdict(list))
     added: dict[int, list[int]] = field(default_factory=dict)

@@ -83,6 +83,8 @@ def _spc(deck: Deck, card: Card) -> None:
 
 def _spc1(deck: Deck, card: Card) -> None:
     named = [value for value in card.fields[2:] if value]
+    if not named:
+        raise InputError("names no grid that is held")
     ranges = _ranges(named)
     deck.supports[whole(card.get(2))].extend((numbers, card.get(3)) for numbers in ranges)
 
@@ -105,9 +107,11 @@ def _rbe2(deck: Deck, card: Card) -> None:
         raise InputError(f"grids follow in dofs 1 to 6; got {card.get(4)!r}")
     named = [value for value in card.fields[3:] if value]
     if named and not named[-1].lstrip("+-").isdigit():
-        named.pop()  # a coefficient of thermal expansion
-    behind = tuple(n for some in _ranges(named) for n in some)
-    deck.rigid.append((whole(card.get(3)), behind, dofs, card.place))
+        real(named.pop())  # a coefficient of thermal expansion
+    ranges = tuple(_ranges(named))
+    if not any(len(some) for some in ranges):
+        raise InputError("names no grid that follows")
+    deck.rigid.append((whole(card.get(3)), ranges, dofs, card.place))
 
 
 def _param(deck: Deck, card: Card) -> None:

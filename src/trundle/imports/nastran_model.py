@@ -244,7 +244,7 @@ class _Builder:
         wholly: dict[int, int] = {}
         partly: dict[str, list[tuple[int, int]]] = defaultdict(list)
         for lead, some, dofs, place in self._deck.rigid:
-            for number in some:
+            for number in self._there(some):
                 pair = self._node(number, place), self._node(lead, place)
                 if dofs != "123456":
                     partly[dofs].append(pair)
@@ -280,11 +280,14 @@ class _Builder:
             if number not in sets:
                 raise InputError(f"case control asks for SPC {number}, which is not there")
             for grids, dofs in sets[number]:
-                # of a range those count that are there; a grid that is named must be
-                there = grids if len(grids) == 1 else [n for n in self._deck.grids if n in grids]
-                for grid in there:
+                for grid in self._there((grids,)):
                     self._hold(fixed, grid, dofs)
         return fixed
+
+    def _there(self, ranges: Sequence[range]) -> Iterator[int]:
+        """Give grids: of a range those that are there; one that is named must be."""
+        for some in ranges:
+            yield from some if len(some) == 1 else (n for n in self._deck.grids if n in some)
 
     def _hold(self, fixed: Array, grid: int, dofs: str) -> None:
         if not re.fullmatch(r"[1-6]*|0", dofs):

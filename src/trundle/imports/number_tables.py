@@ -8,8 +8,9 @@ pandas parses them; this is the only module that knows it.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -38,11 +39,14 @@ class NumberTable:
         All cells as text, columns by heading: small letters, without units.
     lines : ndarray of int, shape (n_rows,)
         Line of each row in the file.
+    units : mapping of str to str
+        Units by heading, small letters, where the heading or a line below it says them.
     """
 
     name: str
     frame: Any
     lines: Int[Array, " rows"]
+    units: Mapping[str, str] = field(default_factory=dict[str, str])
 
     def __len__(self) -> int:
         """Return how many rows there are."""
@@ -52,6 +56,10 @@ class NumberTable:
     def headings(self) -> tuple[str, ...]:
         """What its columns are called."""
         return tuple(map(str, self.frame.columns))
+
+    def unit_of(self, words: Sequence[str]) -> str:
+        """Return the unit of a column, empty where nothing says it."""
+        return next((self.units[one] for one in words if one in self.units), "")
 
     def find(self, words: Sequence[str]) -> Float[Array, " rows"] | None:
         """Return the column that is called by one of some words; None if none is.
@@ -155,11 +163,15 @@ def read_table(path: Path) -> NumberTable:
         raise InputError(f"{path.name}, line {at + 1}: two columns have one heading")
     frame.columns = names
     numbers = np.array([i for i, _ in below], dtype=np.int64)[: len(frame)]
+    given = re.split(mark, heading.replace('"', ""))
+    units = {_plain(one): m[0].strip(" []()").lower() for one in given if (m := _UNIT.search(one))}
     if len(frame) and _says_units(frame.iloc[0]):
+        below = zip(names, frame.iloc[0].tolist(), strict=True)
+        units |= {k: str(v).lower() for k, v in below if isinstance(v, str) and v}
         frame, numbers = frame.iloc[1:], numbers[1:]
     if not len(frame):
         raise InputError(f"{path.name}: has a heading, and no rows")
-    return NumberTable(name=path.name, frame=frame, lines=numbers)
+    return NumberTable(name=path.name, frame=frame, lines=numbers, units=units)
 
 
 def _frame(
@@ -170,10 +182,15 @@ def _frame(
     import pandas as pd  # noqa: PLC0415 - a quarter of a second, for tables alone
 
     try:
-        frame = pd.read_csv(
-            io.StringIO("\n".join([heading, *rows])), sep=mark, dtype=str, skipinitialspace=True,
-            index_col=False, keep_default_na=False, na_values=[""], quotechar='"',
-        )  # fmt: skip
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            frame = pd.read_csv(
+                io.StringIO("\n".join([heading, *rows])), sep=mark, dtype=str,
+                skipinitialspace=True, index_col=False, keep_default_na=False, na_values=[""],
+                quotechar='"',
+            )  # fmt: skip
+    except pd.errors.ParserWarning:
+        raise InputError(f"{name}: a row has more columns than the heading") from None
     except pd.errors.ParserError as error:
         found = _RAGGED.search(str(error))
         where = f", line {line + int(found[2]) - 1}" if found else ""

@@ -14,11 +14,11 @@ from scipy.spatial import cKDTree
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.imports.sap_joints import Joints
-from trundle.imports.sap_makes import AreaMake
+from trundle.imports.sap_makes import AreaMake, modified_area, used_make
 from trundle.imports.sap_tables import Row, Table
 from trundle.structure import OrthotropicSection, ShellGroup, TriangleGroup
 
-__all__ = ["Area", "areas_placed", "cracks", "plates_of"]
+__all__ = ["Area", "areas_placed", "cracks", "plates_of", "unjoined"]
 
 _MERGED = 1e-5  # of the model's size: nodes of meshes nearer than that are one
 
@@ -35,7 +35,7 @@ class Area:
 
 
 def areas_placed(
-    joints: Joints, tables: Mapping[str, Table], makes: Mapping[str, AreaMake]
+    joints: Joints, tables: Mapping[str, Table], makes: Mapping[str, AreaMake | InputError]
 ) -> list[Area]:
     """Return all areas with their elements; nodes that meshes add are joints' where those are.
 
@@ -59,21 +59,33 @@ def areas_placed(
     sections = _by_area(tables.get("AREA SECTION ASSIGNMENTS"))
     meshes = _by_area(tables.get("AREA AUTO MESH ASSIGNMENTS"))
     angles = _by_area(tables.get("AREA LOCAL AXES ASSIGNMENTS 1 - TYPICAL"))
-    n_joints, found = len(joints.places), list[Area]()
+    modified = _by_area(tables.get("AREA STIFFNESS MODIFIERS"))
+    for name, row in _by_area(tables.get("AREA EDGE CONSTRAINT ASSIGNMENTS")).items():
+        if row.yes("Constrained", default=True):
+            raise InputError(f"{row.place}: edge constraints (of area {name!r}) are not read")
+    n_joints, found, seen = len(joints.places), list[Area](), set[str]()
     for row in connected.rows:
         name = row.text("Area")
+        if name in seen:
+            raise InputError(f"{row.place}: area {name!r} is there twice")
+        seen.add(name)
         corners = _corners(joints, row)
         if name not in sections:
             raise InputError(f"{row.place}: area {name!r} has no section")
         section = sections[name].text("Section")
-        if section not in makes:
-            raise InputError(f"{sections[name].place}: names section {section!r}, not there")
-        angle = angles[name].number("Angle", 0.0) if name in angles else 0.0
+        if section.lower() == "none":
+            continue
+        make = used_make(makes, sections[name], section)
+        if name in modified:
+            make, section = modified_area(make, modified[name]), _changed(section, modified[name])
+        angle = 0.0
+        if name in angles:
+            if angles[name].yes("AdvanceAxes"):
+                raise InputError(f"{angles[name].place}: advanced axes are not read; an angle is")
+            angle = angles[name].number("Angle", 0.0)
         elements = _meshed(joints, corners, meshes.get(name))
         axis = _axis(joints.at(corners), angle, row.place)
-        found.append(
-            Area(name=name, make=makes[section], section=section, axis=axis, elements=elements)
-        )
+        found.append(Area(name=name, make=make, section=section, axis=axis, elements=elements))
     return _merged(joints, found, n_joints)
 
 
@@ -128,8 +140,54 @@ def cracks(joints: Joints, areas: list[Area]) -> Float[Array, "n 3"]:
     return places[np.unique(node[off < 1e-4 * length[edge]])]
 
 
+def unjoined(joints: Joints, areas: list[Area], nodes: Int[Array, " nodes"]) -> Float[Array, "n 3"]:
+    """Return where some nodes lie in the plane of an area, within it, and are none of its nodes.
+
+    Parameters
+    ----------
+    joints : Joints
+        All nodes.
+    areas : list of Area
+        Meshed ones.
+    nodes : ndarray of int, shape (n_nodes,)
+        Of frames.
+    """
+    places = np.array(joints.places)
+    quads = [area.elements[:, [0, 1, 2, -1]] for area in areas]
+    if not quads:
+        return np.zeros((0, 3))
+    every = np.concatenate(quads)
+    free = np.setdiff1d(nodes, every)
+    corners = places[every]
+    middle = corners.mean(axis=1)
+    reach = np.linalg.norm(corners - middle[:, None], axis=2).max()
+    lost = list[int]()
+    for node, near in zip(free, cKDTree(middle).query_ball_point(places[free], reach), strict=True):
+        if len(near) and _inside(places[node], corners[near]).any():
+            lost.append(int(node))
+    return places[lost]
+
+
+def _inside(place: Array, corners: Array) -> Array:
+    """Return within which quadrilaterals a place lies, in their plane."""
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    size = np.linalg.norm(normal, axis=1)
+    normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
+    off = np.abs(np.sum((place - corners[:, 0]) * normal, axis=1))
+    sides = np.roll(corners, -1, axis=1) - corners
+    across = np.cross(sides, place - corners)
+    same = np.einsum("nkj,nj->nk", across, normal) >= -1e-9 * size[:, None]
+    return same.all(axis=1) & (off < 1e-4 * np.sqrt(size))
+
+
 def _by_area(table: Table | None) -> dict[str, Row]:
     return {} if table is None else {row.text("Area"): row for row in table.rows}
+
+
+def _changed(section: str, row: Row) -> str:
+    """Return what a section is called that is changed by modifiers of its area."""
+    by = ", ".join(f"{k} {v}" for k, v in row.cells.items() if k != "area" and v not in {"1", "1."})
+    return f"{section}, {by}" if by else section
 
 
 def _corners(joints: Joints, row: Row) -> Array:
@@ -146,9 +204,12 @@ def _meshed(joints: Joints, corners: Array, mesh: Row | None) -> Array:
         return corners[None]
     if len(corners) != 4:
         raise InputError(f"{mesh.place}: a mesh of a triangle is not read; divide it")
+    for key in ("SuppEdge", "SuppFace", "SubMesh", "LocalEdge", "LocalFace"):
+        if mesh.yes(key):
+            raise InputError(f"{mesh.place}: {key} is not read")
     at = joints.at(corners)
     if kind in {"num intervals", "number of objects", "numbers"}:
-        n1, n2 = mesh.whole("Number1", 1), mesh.whole("Number2", 1)
+        n1, n2 = mesh.whole("Number1"), mesh.whole("Number2")
     elif kind in {"max size", "maximum size"}:
         along = [max(_side(at, 0, 1), _side(at, 3, 2)), max(_side(at, 0, 3), _side(at, 1, 2))]
         sizes = (mesh.number("MaxSize1"), mesh.number("MaxSize2"))

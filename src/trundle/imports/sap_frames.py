@@ -17,8 +17,9 @@ from scipy.spatial import cKDTree
 
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.imports.sap_ends import insertion_of, releases_of, rigid_ends_of
 from trundle.imports.sap_joints import Joints
-from trundle.imports.sap_makes import FrameMake
+from trundle.imports.sap_makes import FrameMake, modified_frame, used_make
 from trundle.imports.sap_tables import Row, Table
 from trundle.structure import BeamGroup
 from trundle.structure.elements import ReleasedBeams
@@ -27,11 +28,6 @@ __all__ = ["FramePart", "beams_of", "frames_placed"]
 
 _ON = 1e-5  # of the frame's length, by which a joint on it may be off
 _UPRIGHT = 1e-3  # sine of the angle to Z below which a frame stands
-_RELEASES = (("TI", "M3I", "M2I"), ("TJ", "M3J", "M2J"))  # about our x, y, z
-_CARDINAL = {  # shares of half depth along 2, of half width along 3
-    1: (-1, 1), 2: (-1, 0), 3: (-1, -1), 4: (0, 1), 5: (0, 0), 6: (0, -1), 7: (1, 1), 8: (1, 0),
-    9: (1, -1), 10: (0, 0), 11: (0, 0),
-}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +58,7 @@ class FramePart:
 
 
 def frames_placed(
-    joints: Joints, tables: Mapping[str, Table], makes: Mapping[str, FrameMake]
+    joints: Joints, tables: Mapping[str, Table], makes: Mapping[str, FrameMake | InputError]
 ) -> list[FramePart]:
     """Return all frames, divided as they say.
 
@@ -85,11 +81,16 @@ def frames_placed(
         return []
     assigned = _Assigned(tables)
     tree, everywhere = cKDTree(np.array(joints.places)), np.array(joints.places)
-    found = list[FramePart]()
+    found, seen = list[FramePart](), set[str]()
     for row in connected.rows:
         if row.yes("IsCurved"):
             raise InputError(f"{row.place}: a curved frame is not read; divide it")
         name = row.text("Frame")
+        if name in seen:
+            raise InputError(f"{row.place}: frame {name!r} is there twice")
+        seen.add(name)
+        if assigned.is_nothing(name):
+            continue
         ends = tuple(joints.node(row.text(key), row.place) for key in ("JointI", "JointJ"))
         length = float(np.linalg.norm(everywhere[ends[1]] - everywhere[ends[0]]))
         if not length > 0.0:
@@ -137,6 +138,12 @@ class _Assigned:
         )
         self.insertions = rows("FRAME INSERTION POINT ASSIGNMENTS")
         self.meshes = rows("FRAME AUTO MESH ASSIGNMENTS")
+        self.modifiers = rows("FRAME PROPERTY MODIFIERS")
+
+    def is_nothing(self, name: str) -> bool:
+        """Return whether a frame is a line alone, without a section."""
+        row = self.sections.get(name)
+        return row is not None and row.text("AnalSect", row.text("Section", "-")).lower() == "none"
 
     def at_joints(self, name: str) -> bool:
         """Return whether joints that lie on a frame divide it."""
@@ -194,14 +201,14 @@ def _node_at(joints: Joints, ends: tuple[int, ...], share: float, node: int) -> 
 
 
 def _parts(
-    joints: Joints, assigned: _Assigned, makes: Mapping[str, FrameMake], line: _Line
+    joints: Joints, assigned: _Assigned, makes: Mapping[str, FrameMake | InputError], line: _Line
 ) -> Iterator[FramePart]:
     """Give the parts of a frame between the nodes that divide it."""
     section, make = _made(assigned, makes, line)
     frame = _frame(joints, line.ends, assigned.angles.get(line.name))
-    first, last = _inserted(assigned.insertions.get(line.name), make, frame)
-    rigid = _rigid_ends(assigned.offsets.get(line.name), line.length)
-    released = _released(assigned.releases.get(line.name))
+    first, last = insertion_of(assigned.insertions.get(line.name), make, frame)
+    rigid = rigid_ends_of(assigned.offsets.get(line.name), line.length)
+    released = releases_of(assigned.releases.get(line.name))
     same = bool(np.allclose(first, last, atol=1e-9 * line.length))
 
     def bending(i: int) -> int:
@@ -234,15 +241,18 @@ def _parts(
 
 
 def _made(
-    assigned: _Assigned, makes: Mapping[str, FrameMake], line: _Line
+    assigned: _Assigned, makes: Mapping[str, FrameMake | InputError], line: _Line
 ) -> tuple[str, FrameMake]:
     row = assigned.sections.get(line.name)
     if row is None:
         raise InputError(f"{line.place}: frame {line.name!r} has no section")
     name = row.text("AnalSect", row.text("Section", "-"))
-    if name not in makes:
-        raise InputError(f"{row.place}: names section {name!r}, which is not there")
-    return name, makes[name]
+    make = used_make(makes, row, name)
+    if line.name in assigned.modifiers:
+        by = assigned.modifiers[line.name]
+        cells = (f"{k} {v}" for k, v in by.cells.items() if k != "frame" and v not in {"1", "1."})
+        return ", ".join([name, *cells]), modified_frame(make, by)
+    return name, make
 
 
 def _rounded(vector: Array) -> tuple[float, float, float]:
@@ -259,70 +269,13 @@ def _frame(joints: Joints, ends: tuple[int, ...], angle: Row | None) -> Float[Ar
     second = up - (up @ first) * first
     second /= np.linalg.norm(second)
     if angle is not None:
+        if angle.yes("MirrorAbt2") or angle.yes("MirrorAbt3"):
+            raise InputError(f"{angle.place}: mirrored axes are not read")
         if angle.yes("AdvanceAxes"):
             raise InputError(f"{angle.place}: advanced axes are not read; an angle is")
         turn = np.deg2rad(angle.number("Angle", 0.0))
         second = np.cos(turn) * second + np.sin(turn) * np.cross(first, second)
     return np.array([first, second, np.cross(first, second)])
-
-
-def _released(row: Row | None) -> tuple[tuple[bool, ...], tuple[bool, ...]]:
-    """Return which rotations the ends let go, about our x, y and z."""
-    if row is None:
-        return (False,) * 3, (False,) * 3
-    if row.yes("PartialFix"):
-        raise InputError(f"{row.place}: partial fixity is not read")
-    if any(row.yes(key) for key in ("PI", "V2I", "V3I", "PJ", "V2J", "V3J")):
-        raise InputError(f"{row.place}: releases of forces are not read; those of moments are")
-    first, last = (tuple(row.yes(key) for key in keys) for keys in _RELEASES)
-    return first, last
-
-
-def _rigid_ends(row: Row | None, length: float) -> tuple[float, float]:
-    """Return how far a frame is rigid at both ends."""
-    if row is None:
-        return 0.0, 0.0
-    if row.text("Type", "User").lower().startswith("auto"):
-        row.text("LengthI", "0")
-    factor = row.number("RigidFact", row.number("RigidFactor", 0.0))
-    if not 0.0 <= factor <= 1.0:
-        raise InputError(f"{row.place}: a rigid zone factor is 0 to 1; got {factor:g}")
-    first, last = (factor * row.number(key, 0.0) for key in ("LengthI", "LengthJ"))
-    if min(first, last) < 0.0 or first + last >= length:
-        raise InputError(f"{row.place}: end offsets leave nothing that bends")
-    return first, last
-
-
-def _inserted(
-    row: Row | None, make: FrameMake, frame: Float[Array, "3 3"]
-) -> tuple[Float[Array, " 3"], Float[Array, " 3"]]:
-    """Return the vectors from both joints to the frame's axis."""
-    none = np.zeros(3)
-    if row is None or not row.yes("TransStiff", default=True):
-        return none, none
-    cardinal = row.text("CardinalPt", "10").split()[0]
-    number = int(cardinal) if cardinal.isdigit() else 0
-    if number not in _CARDINAL:
-        raise InputError(f"{row.place}: a cardinal point is 1 to 11; got {cardinal!r}")
-    two, three = _CARDINAL[number]
-    if row.yes("MirrorAbt2"):
-        three = -three
-    if (two or three) and not make.symmetric:
-        raise InputError(
-            f"{row.place}: where the box of this section lies round its centroid is not known; "
-            "use joint offsets, with cardinal point 10"
-        )
-    # the joint is at the cardinal point: the axis lies the other way
-    base = -0.5 * (two * make.depth * frame[1] + three * make.width * frame[2])
-    system = row.text("CoordSys", "Local")
-    turn = frame if system.lower() == "local" else np.eye(3)
-    if system.lower() not in {"local", "global"}:
-        raise InputError(f"{row.place}: offsets in {system!r} are not read; Local and GLOBAL are")
-    keys = ("1", "2", "3") if system.lower() == "local" else ("X", "Y", "Z")
-    shift = [
-        np.array([row.number(f"JtOffset{key}{end}", 0.0) for key in keys]) @ turn for end in "IJ"
-    ]
-    return base + shift[0], base + shift[1]
 
 
 def beams_of(parts: list[FramePart]) -> tuple[list[BeamGroup], list[ReleasedBeams]]:

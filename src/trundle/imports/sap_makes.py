@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
@@ -13,15 +13,26 @@ from trundle.errors import InputError
 from trundle.imports.sap_tables import Row, Table
 from trundle.structure import BeamSection, Material, OrthotropicSection, ShellSection
 
-__all__ = ["AreaMake", "FrameMake", "areas_of", "frames_of", "materials_of"]
+__all__ = [
+    "AreaMake",
+    "FrameMake",
+    "areas_of",
+    "frames_of",
+    "materials_of",
+    "modified_area",
+    "modified_frame",
+    "used_make",
+]
 
 _SYMMETRIC = {
     "rectangular", "i/wide flange", "box/tube", "pipe", "circle", "steel tube", "steel pipe",
     "concrete rectangular", "concrete circle",
 }  # fmt: skip
+T = TypeVar("T")
 _Four: TypeAlias = tuple[float, float, float, float]
 _STIFF = 1e4  # times its shear stiffness, of a plate that does not shear
-_SHELLS = {"shell-thin", "shell-thick", "plate-thin", "plate-thick", "shell"}
+_SHELLS = {"shell-thin", "shell-thick", "shell"}
+_AREA_KEYS = ("f11", "f22", "f12", "m11", "m22", "m12", "v13", "v23")
 _MODIFIERS = ("F11Mod", "F22Mod", "F12Mod", "M11Mod", "M22Mod", "M12Mod", "V13Mod", "V23Mod")
 
 
@@ -100,8 +111,8 @@ def materials_of(general: Table, basic: Table) -> dict[str, tuple[Material, floa
 
 def frames_of(
     table: Table, materials: Mapping[str, tuple[Material, float]]
-) -> dict[str, FrameMake]:
-    """Return frame sections by name.
+) -> dict[str, FrameMake | InputError]:
+    """Return frame sections by name, or why one cannot be used.
 
     Parameters
     ----------
@@ -109,13 +120,112 @@ def frames_of(
         FRAME SECTION PROPERTIES 01 - GENERAL.
     materials : mapping of str to (Material, float)
         See `materials_of`.
+    """
+    return {
+        row.text("SectionName"): _kept(lambda r=row: _frame(r, materials)) for row in table.rows
+    }
+
+
+def _kept(make: Callable[[], T]) -> T | InputError:
+    """Return what is made, or why it cannot be: sections that nothing uses do no harm."""
+    try:
+        return make()
+    except InputError as error:
+        return error
+
+
+def used_make(makes: Mapping[str, T | InputError], row: Row, name: str) -> T:
+    """Return a section that is used.
+
+    Parameters
+    ----------
+    makes : mapping of str
+        All sections.
+    row : Row
+        Who uses it.
+    name : str
+        Its name.
 
     Raises
     ------
     InputError
-        A section that changes along its frame, or whose numbers cannot be.
+        It is not there, or cannot be used; or another material is assigned than its own.
     """
-    return {row.text("SectionName"): _frame(row, materials) for row in table.rows}
+    if row.text("MatProp", "Default").lower() != "default":
+        raise InputError(f"{row.place}: another material than the section's (MatProp) is not read")
+    if name not in makes:
+        raise InputError(f"{row.place}: names section {name!r}, which is not there")
+    found = makes[name]
+    if isinstance(found, InputError):
+        raise found
+    return found
+
+
+def modified_frame(make: FrameMake, row: Row) -> FrameMake:
+    """Return a frame section times the modifiers of FRAME PROPERTY MODIFIERS.
+
+    Parameters
+    ----------
+    make : FrameMake
+        Its section.
+    row : Row
+        The modifiers.
+    """
+    by = {k: row.number(f"{k}Mod", 1.0) for k in ("A", "AS2", "AS3", "J", "I22", "I33")}
+    section = make.section
+    try:
+        changed = replace(
+            section,
+            area=section.area * by["A"],
+            inertia_y=section.inertia_y * by["I33"],
+            inertia_z=section.inertia_z * by["I22"],
+            torsion_constant=section.torsion_constant * by["J"],
+            shear_area_z=section.shear_area_z * by["AS2"],
+            shear_area_y=section.shear_area_y * by["AS3"],
+        )
+    except InputError as error:
+        raise InputError(f"{row.place}: {error}") from None
+    return replace(
+        make,
+        section=changed,
+        mass_per_length=make.mass_per_length * row.number("MassMod", 1.0),
+        weight_per_length=make.weight_per_length * row.number("WeightMod", 1.0),
+    )
+
+
+def modified_area(make: AreaMake, row: Row) -> AreaMake:
+    """Return an area section times the modifiers of AREA STIFFNESS MODIFIERS.
+
+    Parameters
+    ----------
+    make : AreaMake
+        Its section.
+    row : Row
+        The modifiers.
+    """
+    f = [row.number(key, 1.0) for key in _AREA_KEYS]
+    section = make.section
+    assert isinstance(section, OrthotropicSection)  # areas are made so
+
+    def times(law: _Four, x: float, y: float, twist: float) -> _Four:
+        """Return a law times its modifiers, its coupling by the root of both."""
+        return law[0] * x, law[1] * y, law[2] * float(np.sqrt(max(x * y, 0.0))), law[3] * twist
+
+    try:
+        changed = replace(
+            section,
+            membrane=times(section.membrane, *f[:3]),
+            bending=times(section.bending, *f[3:6]),
+            shear=(section.shear[0] * f[6], section.shear[1] * f[7]),
+        )
+    except InputError as error:
+        raise InputError(f"{row.place}: {error}") from None
+    return replace(
+        make,
+        section=changed,
+        mass_per_area=make.mass_per_area * row.number("MassMod", 1.0),
+        weight_per_area=make.weight_per_area * row.number("WeightMod", 1.0),
+    )
 
 
 def _known(row: Row, materials: Mapping[str, tuple[Material, float]]) -> tuple[Material, float]:
@@ -130,6 +240,9 @@ def _frame(row: Row, materials: Mapping[str, tuple[Material, float]]) -> FrameMa
     if "nonprismatic" in shape.lower():
         raise InputError(f"{row.place}: a section that changes along its frame is not read")
     material, weight = _known(row, materials)
+    aslant = abs(row.number("I23", 0.0))
+    if aslant > 1e-6 * row.number("I33"):
+        raise InputError(f"{row.place}: I23 is not 0: principal axes that lie aslant are not read")
     by = {k: row.number(f"{k}Mod", 1.0) for k in ("A", "A2", "A3", "J", "I2", "I3", "M", "W")}
     area = row.number("Area")
     shear = [row.number(key, 0.0) * by[k] for key, k in (("AS2", "A2"), ("AS3", "A3"))]
@@ -152,12 +265,16 @@ def _frame(row: Row, materials: Mapping[str, tuple[Material, float]]) -> FrameMa
         weight_per_length=weight * area * by["W"],
         depth=row.number("t3", 0.0),
         width=row.number("t2", 0.0),
-        symmetric=shape.lower() in _SYMMETRIC,
+        symmetric=shape.lower() in _SYMMETRIC
+        and row.number("t2b", row.number("t2", 0.0)) == row.number("t2", 0.0)
+        and row.number("tfb", row.number("tf", 0.0)) == row.number("tf", 0.0),
     )
 
 
-def areas_of(table: Table, materials: Mapping[str, tuple[Material, float]]) -> dict[str, AreaMake]:
-    """Return area sections by name.
+def areas_of(
+    table: Table, materials: Mapping[str, tuple[Material, float]]
+) -> dict[str, AreaMake | InputError]:
+    """Return area sections by name, or why one cannot be used.
 
     Parameters
     ----------
@@ -165,21 +282,15 @@ def areas_of(table: Table, materials: Mapping[str, tuple[Material, float]]) -> d
         AREA SECTION PROPERTIES.
     materials : mapping of str to (Material, float)
         See `materials_of`.
-
-    Raises
-    ------
-    InputError
-        What is no plate of one material, or numbers that cannot be.
     """
-    return {row.text("Section"): _area(row, materials) for row in table.rows}
+    return {row.text("Section"): _kept(lambda r=row: _area(r, materials)) for row in table.rows}
 
 
 def _area(row: Row, materials: Mapping[str, tuple[Material, float]]) -> AreaMake:
     kind, shell = row.text("AreaType", "Shell"), row.text("Type", "Shell-Thin")
     if kind.lower() != "shell" or shell.lower() not in _SHELLS:
         raise InputError(
-            f"{row.place}: an area of {kind}, {shell}, is not read; shells and plates, thin and "
-            "thick, are"
+            f"{row.place}: an area of {kind}, {shell}, is not read; shells, thin and thick, are"
         )
     material, weight = _known(row, materials)
     thick, bend = row.number("Thickness"), row.number("BendThick", row.number("Thickness"))

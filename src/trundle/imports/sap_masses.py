@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,7 +22,7 @@ from trundle.structure.elements import NodeInertia
 __all__ = ["Lumps", "masses_of"]
 
 _INERTIA = ("Mass1", "Mass2", "Mass3", "MMI1", "MMI2", "MMI3")
-_GRAVITY = {"gravity", "grav", "gravity projected", "grav proj"}
+_GRAVITY = {"gravity", "grav"}
 _OF_LOADS = {
     "JOINT LOADS - FORCE", "FRAME LOADS - DISTRIBUTED", "AREA LOADS - UNIFORM",
     "LOAD PATTERN DEFINITIONS",
@@ -165,7 +166,9 @@ def _source(tables: Mapping[str, Table]) -> tuple[bool, bool, dict[str, float]]:
             continue
         if "massfrom" in row.cells:
             words = row.text("MassFrom").lower()
-            elements, added = "element" in words, "element" in words or "additional" in words
+            if not re.search("element|load", words):
+                raise InputError(f"{row.place}: a source of mass {words!r} is not known")
+            elements = added = "element" in words
         elif "elements" in row.cells:
             elements, added = row.yes("Elements"), row.yes("Masses")
             row.yes("Loads")
@@ -199,6 +202,8 @@ def _of_loads(
     """Add the masses of loads that press down, by the shares of their patterns."""
     for row, share in _loads(tables, "JOINT LOADS - FORCE", patterns):
         node = lumps.joints.node(row.text("Joint"), row.place)
+        if row.text("CoordSys", "GLOBAL").upper() != "GLOBAL":
+            raise InputError(f"{row.place}: a force in another system is not read as mass")
         weight = -row.number("F3", 0.0)
         _check(row, weight)
         lumps.at_joints[node, :3] += share * weight / gravity
@@ -228,11 +233,13 @@ def _loads(
 def _down(row: Row, value: float) -> float:
     """Return a load that presses down, by its direction."""
     way = row.text("Dir", "Gravity").lower()
-    row.text("CoordSys", "GLOBAL")
-    if way in {"z", "zproj"}:
+    system = row.text("CoordSys", "GLOBAL").lower()
+    if way in {"x", "y"} and system == "global":
+        return 0.0  # of no weight
+    if way == "z" and system == "global":
         value = -value
     elif way not in _GRAVITY:
-        return 0.0  # of no weight
+        raise InputError(f"{row.place}: a load along {way} ({system}) is not read as mass")
     _check(row, value)
     return value
 

@@ -161,6 +161,8 @@ def _row(place: str, line: str) -> Row:
     for found in _PAIR.finditer(line):
         if line[at : found.start()].strip():
             break
+        if found[1].lower() in cells:
+            raise InputError(f"{place}: {found[1]} is there twice")
         cells[found[1].lower()] = found[2].strip('"').replace('""', '"').strip()
         at = found.end()
     if line[at:].strip() or not cells:

@@ -72,7 +72,7 @@ def write(subject: Subject, stem: str) -> Mapping[str, bytes]:
     structure, buffer = subject.structure, _Buffer()
     shapes = np.zeros((0, len(structure.nodes), 6))
     names: list[str] = []
-    if subject.modes is not None:
+    if subject.modes is not None and subject.modes.n_modes:
         modes = subject.modes.first(_MOST)
         shapes = shapes_at_nodes(structure, modes)
         names = [f"mode {i}, {f:.2f} Hz" for i, f in enumerate(modes.frequencies, start=1)]

@@ -69,7 +69,10 @@ def read(path: Path, asked: Asked) -> ReadModel:
         try:
             units, said = agreed_units(None, asked.units)
             told = (*said, *told)
-            floor = in_si(floor_of(deck, case_control(path).get("SPC"), path.stem), units)
+            control = case_control(path)
+            if "MPC" in control:
+                raise InputError(f"case control asks for MPC {control['MPC']}, which is not read")
+            floor = in_si(floor_of(deck, control.get("SPC"), path.stem), units)
         except InputError as error:
             problem = Problem(
                 place=path.name, value="the model", rule=str(error), remedy="correct the model"

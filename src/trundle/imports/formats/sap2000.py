@@ -15,7 +15,7 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import InputError, Problem
 from trundle.imports.model_format import Asked, ModelFormat, ReadModel
-from trundle.imports.sap_areas import areas_placed, cracks, plates_of
+from trundle.imports.sap_areas import areas_placed, cracks, plates_of, unjoined
 from trundle.imports.sap_frames import beams_of, frames_placed
 from trundle.imports.sap_joints import constraints_of, joints_of, restraints_of, springs_of
 from trundle.imports.sap_makes import areas_of, frames_of, materials_of
@@ -39,19 +39,30 @@ _READ = {
     "FRAME ADDED MASS ASSIGNMENTS", "CONNECTIVITY - AREA", "AREA SECTION ASSIGNMENTS",
     "AREA SECTION PROPERTIES", "AREA AUTO MESH ASSIGNMENTS",
     "AREA LOCAL AXES ASSIGNMENTS 1 - TYPICAL", "AREA ADDED MASS ASSIGNMENTS",
+    "AREA STIFFNESS MODIFIERS", "FRAME PROPERTY MODIFIERS", "AREA EDGE CONSTRAINT ASSIGNMENTS",
     "MATERIAL PROPERTIES 01 - GENERAL", "MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES",
     "MASS SOURCE", "MASSES 1 - MASS SOURCE",
 }  # fmt: skip
 
 _NOTHING = re.compile(
-    r"^(PROJECT INFORMATION|COORDINATE SYSTEMS|GRID LINES|GROUPS|DATABASE FORMAT|PREFERENCES|"
-    r"OVERWRITES|OPTIONS|LOAD|CASE|COMBINATION|FUNCTION|ANALYSIS|AUTO |BRIDGE|NAMED|TABLES|"
-    r"MATERIAL PROPERTIES 0[3-9]|REBAR|FRAME SECTION PROPERTIES (0[2-4]|1)|"
-    r"FRAME (OUTPUT|DESIGN|OVERWRITES|LOADS|BUCKLING|P-DELTA|TENSION|HINGE|STEEL|REBAR)|"
-    r"AREA (LOADS|SECTION PROPERTY DESIGN|DESIGN|OUTPUT|OVERWRITE|STIFFNESS)|JOINT (LOADS|PATTERN|"
-    r"ADDED PATTERN|PANEL ZONE DESIGN)|VIEW|PROGRAM|MISC|STEEL|CONCRETE|ALUMINUM|COLD|SECTION CUT|"
-    r"GENERALIZED|RESPONSE|TARGET|RUN|DEFAULT|MODAL|BASE REACTION|SELECTION)"
-)
+    "^("
+    + "|".join(
+        (
+            "PROJECT INFORMATION", "COORDINATE SYSTEMS", "GRID LINES", "GROUPS", "DATABASE FORMAT",
+            "PREFERENCES", "OVERWRITES", "OPTIONS", "LOAD", "CASE", "COMBINATION", "FUNCTION",
+            "ANALYSIS", "AUTO ", "BRIDGE", "NAMED", "TABLES", "MATERIAL PROPERTIES 0[3-9]", "REBAR",
+            "FRAME SECTION PROPERTIES (0[2-4]|1)", "FRAME (OUTPUT|DESIGN|OVERWRITES - |LOAD)",
+            "FRAME (BUCKLING|HINGE)", "AREA (LOADS|DESIGN|OUTPUT)",
+            "AREA SECTION PROPERTY (DESIGN|- TIME)", "JOINT (LOADS|PATTERN|ADDED PATTERN)",
+            "JOINT PANEL ZONE DESIGN", "SECTION DESIGNER", "HINGES DEF", "LANE", "VEHICLE",
+            "PUSHOVER", "SOLID PROPERTY", "CABLE SECTION", "TENDON SECTION",
+            "LINK PROPERTY DEFINITIONS", "VIEW", "PROGRAM", "MISC", "STEEL", "CONCRETE", "ALUMINUM",
+            "COLD", "SECTION CUT", "GENERALIZED", "RESPONSE", "TARGET", "RUN", "DEFAULT", "MODAL",
+            "BASE REACTION", "SELECTION",
+        )
+    )
+    + ")"
+)  # fmt: skip
 """Tables that hold nothing of the structure: drawing, loads, cases, design, what is asked for."""
 
 
@@ -104,7 +115,7 @@ def where_apart(places: Float[Array, "n 3"]) -> str:
         In the file's units.
     """
     first = ", ".join(f"{value:.4g}" for value in places[0])
-    return f"areas meet at {len(places)} places without sharing nodes, the first at ({first})"
+    return f"areas and frames meet at {len(places)} places without sharing nodes: ({first})"
 
 
 def _is_read(name: str) -> bool:
@@ -158,6 +169,7 @@ def floor_of_tables(
 
     if "JOINT COORDINATES" not in tables:
         raise InputError("has no joints: export the model definition, all tables")
+    _check_names(tables)
     joints = joints_of(
         tables["JOINT COORDINATES"], tables.get("JOINT LOCAL AXES ASSIGNMENTS 1 - TYPICAL")
     )
@@ -185,7 +197,63 @@ def floor_of_tables(
         links=constraints_of(joints, fixed, tables),
         name=name,
     )
-    return floor, cracks(joints, areas)
+    ends = np.unique(np.array([part.nodes for part in parts]).reshape(-1).astype(int))
+    return floor, np.concatenate([cracks(joints, areas), unjoined(joints, areas, ends)])
+
+
+_CLOSED = {
+    "JOINT RESTRAINT ASSIGNMENTS": {"joint", "u1", "u2", "u3", "r1", "r2", "r3"},
+    "ACTIVE DEGREES OF FREEDOM": {"ux", "uy", "uz", "rx", "ry", "rz"},
+    "FRAME RELEASE ASSIGNMENTS 1 - GENERAL": {
+        "frame", "pi", "v2i", "v3i", "ti", "m2i", "m3i", "pj", "v2j", "v3j", "tj", "m2j", "m3j",
+        "partialfix",
+    },
+    "FRAME PROPERTY MODIFIERS": {
+        "frame", "amod", "as2mod", "as3mod", "jmod", "i22mod", "i33mod", "massmod", "weightmod",
+    },
+    "AREA STIFFNESS MODIFIERS": {
+        "area", "f11", "f22", "f12", "m11", "m22", "m12", "v13", "v23", "massmod", "weightmod",
+    },
+}  # fmt: skip
+"""Tables of which every key counts: one that is not known is no matter of drawing."""
+
+
+def _check_names(tables: Mapping[str, Table]) -> None:
+    """Refuse what is assigned to nothing, keys that cannot be left out, and what is there twice."""
+    known = {
+        "joint": _named(tables, "JOINT COORDINATES", "Joint"),
+        "frame": _named(tables, "CONNECTIVITY - FRAME", "Frame"),
+        "area": _named(tables, "CONNECTIVITY - AREA", "Area"),
+    }
+    for title, table in tables.items():
+        if not _is_read(title) or not re.search("ASSIGNMENTS|MODIFIERS|ACTIVE", title):
+            continue
+        closed = _CLOSED.get(title)
+        for row in table.rows:
+            for thing, names in known.items():
+                name = row.cells.get(thing, "")
+                if name and name not in names:
+                    raise InputError(f"{row.place}: names {thing} {name!r}, which is not there")
+            if closed is not None and (odd := set(row.cells) - closed):
+                raise InputError(f"{row.place}: {sorted(odd)[0]} is not known in {title.title()}")
+    for title, key in (
+        ("FRAME SECTION PROPERTIES 01 - GENERAL", "SectionName"),
+        ("AREA SECTION PROPERTIES", "Section"),
+        ("MATERIAL PROPERTIES 02 - BASIC MECHANICAL PROPERTIES", "Material"),
+        ("FRAME SECTION ASSIGNMENTS", "Frame"),
+        ("AREA SECTION ASSIGNMENTS", "Area"),
+        ("PROGRAM CONTROL", "CurrUnits"),
+    ):
+        rows = tables[title].rows if title in tables else []
+        if title != "PROGRAM CONTROL" and len(_named(tables, title, key)) < len(rows):
+            raise InputError(f"{tables[title].place}: a {key} stands twice in {title.title()}")
+        if title == "PROGRAM CONTROL" and len(rows) > 1:
+            raise InputError(f"{rows[1].place}: PROGRAM CONTROL has one row")
+
+
+def _named(tables: Mapping[str, Table], title: str, key: str) -> set[str]:
+    rows = tables[title].rows if title in tables else []
+    return {row.text(key, "") for row in rows}
 
 
 FORMAT = ModelFormat(

@@ -206,3 +206,29 @@ def test_damaged_matrices_are_refused(tmp_path, name, text, words):
     )
     assert read.structure is None
     assert words in str(read.problems[0])
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("node 1,node 2,node 3,node 4\n1,2,3,4\n", "line 2: a face is folded"),
+        ("node 1,node 2,node 3,node 4\n1,2,4,4\n", "line 2: a face names a node twice"),
+        ("node 1,node 2,node 3,corner 4\n1,2,4,3\n", "not used of e.csv: corner_4"),
+        ("node 1,node 2,node 3\n1,2,4\n2,4,1\n", "a face stands in it twice"),
+        ("node 1,node 2,node 3\n1,2,9\n", "names node 9, which is not in n.csv"),
+    ],
+)
+def test_faces_that_cannot_be_are_refused(tmp_path, table, words):
+    for file, text in {**GOOD, "e.csv": table}.items():
+        (tmp_path / file).write_text(text)
+    assert words in str(read_modes(files(tmp_path), units=SI).problems[0])
+
+
+def test_columns_that_are_not_used_are_told(tmp_path):
+    for file, text in GOOD.items():
+        (tmp_path / file).write_text(
+            text.replace("mode,uz", "mode,uz,v1").replace("0.1\n", "0.1,7\n")
+        )
+    (tmp_path / "s.csv").write_text("node,mode,uz,v1\n1,1,0.1,5\n2,1,0.2,5\n3,1,0.3,5\n4,1,0.4,5\n")
+    read = read_modes(files(tmp_path, elements=False), units=SI)
+    assert "not used of s.csv: v1" in read.told

@@ -205,6 +205,10 @@ def test_a_grid_in_a_turned_system(tmp_path):
         ("CORD2R,8,0,0.,0.,0.,0.,0.,1.,+\n+,0.,0.,2.", "three points lie on one line"),
         ("PBAR,2,1,0.,1.,1.,1.", "field 4"),
         ("GRID,3,,1.+400,0.,0.", "too large a number"),
+        ("GRID,3,,1.,2.,0.\n,50,2,,5.", "field 10 is not read"),
+        ("PSHELL,4,1,.2,1,,1,,,+\n+,,,7", "field 12 is not read"),
+        ("RBE2,5,1,123456", "names no grid that follows"),
+        ("SPC1,1,3", "names no grid that is held"),
     ],
 )
 def test_what_is_not_understood_is_told_with_its_line(tmp_path, card, said):

@@ -113,9 +113,10 @@ def tables_of(
 def _read_controls(
     model: _Model, statements: list[Statement], metres: Callable[[str], float]
 ) -> None:
-    one = next((s for s in statements if s.words[0].upper() == "UNITS"), None)
-    if one is None:
-        raise InputError("states no UNITS")
+    stated = [s for s in statements if s.words[0].upper() == "UNITS"]
+    if len(stated) != 1:
+        raise InputError("states no UNITS" if not stated else f"{stated[1].place}: UNITS twice")
+    one = stated[0]
     model.units = ", ".join(one.words[1:])
     model.length = metres(model.units)
     model.rows.gravity = 9.80665 / model.length

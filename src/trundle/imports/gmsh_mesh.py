@@ -25,6 +25,7 @@ _REFUSED = {
     10: (2, "quadrilaterals of second order"), 16: (2, "quadrilaterals of second order"),
 }  # fmt: skip
 _DIMENSION = {1: 0, 2: 1, 3: 2, 4: 2}  # by the number of corners
+_MOST = 2**53  # of a node's number
 _PASSED = {"Comments", "Periodic", "Parametrizations", "InterpolationScheme"}
 
 
@@ -90,6 +91,22 @@ class _Lines:
         if not np.isfinite(found).all():
             raise InputError(f"{self.place}: a number before here is not finite")
         return found.reshape(n, width)
+
+    def ended(self) -> None:
+        """Refuse lines that are left over."""
+        left = next((i for i in range(self._at, len(self._lines)) if self._lines[i].strip()), None)
+        if left is not None:
+            self._at = left
+            raise InputError(f"{self.place}: is left over: more lines than the section says")
+
+    def wholes(self, n: int, width: int) -> Array:
+        """Return a table of whole numbers above 0, a row a line."""
+        found = self.table(n, width)
+        if found.size and (
+            np.any(found != np.round(found)) or found.min() < 1 or found.max() > _MOST
+        ):
+            raise InputError(f"{self.place}: numbers before here must be whole, 1 to {_MOST:g}")
+        return found.astype(np.int64)
 
     def skip(self, n: int) -> None:
         """Pass over some lines."""
@@ -221,6 +238,9 @@ def _entities(mesh: _Mesh, lines: _Lines) -> None:
 
 def _nodes_2(mesh: _Mesh, lines: _Lines) -> None:
     table = lines.table(_count(lines), 4)
+    lines.ended()
+    if len(table) and (np.any(table[:, 0] != np.round(table[:, 0])) or table[:, 0].min() < 1):
+        raise InputError(f"{lines.place}: a node's number must be whole, and above 0")
     mesh.tags, mesh.places = table[:, 0].astype(np.int64), table[:, 1:]
 
 
@@ -230,8 +250,9 @@ def _nodes_4(mesh: _Mesh, lines: _Lines) -> None:
         place, (_, _, parametric, n) = lines.place, lines.numbers(4)[:4]
         if parametric:
             raise InputError(f"{place}: parametric nodes are not read (Mesh.SaveParametric = 0)")
-        tags.append(lines.table(int(n), 1)[:, 0].astype(np.int64))
+        tags.append(lines.wholes(int(n), 1)[:, 0])
         places.append(lines.table(int(n), 3))
+    lines.ended()
     if tags:
         mesh.tags, mesh.places = np.concatenate(tags), np.concatenate(places)
 
@@ -262,15 +283,16 @@ def _elements_4(mesh: _Mesh, lines: _Lines) -> None:
             lines.skip(int(n))
             continue
         corners = _CORNERS[int(kind)]
-        table = lines.table(int(n), 1 + corners)
-        mesh.blocks.append((corners, groups, table[:, 1:].astype(np.int64)))
+        table = lines.wholes(int(n), 1 + corners)
+        mesh.blocks.append((corners, groups, table[:, 1:]))
+    lines.ended()
 
 
 def _elements_2(mesh: _Mesh, lines: _Lines) -> None:
     """Take elements: number, type, number of tags, tags (the first its group), nodes."""
     n = _count(lines)
     rows, first = lines.rest()
-    if len(rows) < n:
+    if len([row for row in rows if row.strip()]) != n:
         raise InputError(f"{lines.place}: says {n} elements, and has {len(rows)}")
     found: dict[tuple[int, tuple[int, ...]], list[list[int]]] = defaultdict(list)
     for i, row in enumerate(rows[:n]):

@@ -154,11 +154,31 @@ def _read_faces(nodes: NodeTable, table: NumberTable, *, smooth: bool) -> tuple[
                        (gaps, "a corner is missing between others")):  # fmt: skip
         if np.any(wrong):
             raise InputError(f"{table.name}, line {table.lines[np.flatnonzero(wrong)[0]]}: {why}")
+    if table.unused:
+        raise InputError(f"{table.unused[0]}; columns are node_1 to node_4")
     groups = []
     for k in sorted(set(n.tolist())):
         numbers = nodes.rows(corners[n == k, :k], table.name)
+        _check_faces(nodes.places[numbers], numbers, table, np.flatnonzero(n == k))
         groups.append(FaceGroup(connectivity=numbers, smooth=smooth, name=f"{k} nodes"))
     return tuple(groups)
+
+
+def _check_faces(at: Array, numbers: Array, table: NumberTable, rows: Array) -> None:
+    """Refuse faces with a corner twice, without extent, folded, or there twice."""
+    k = numbers.shape[1]
+    repeated = np.array([len(set(row)) < k for row in numbers.tolist()])
+    folded = np.zeros(len(numbers), dtype=bool)
+    if k > 2:
+        ahead, back = np.roll(at, -1, axis=1) - at, at - np.roll(at, 1, axis=1)
+        turns = np.cross(back, ahead)
+        whole = turns.sum(axis=1, keepdims=True)
+        folded = (np.sum(turns * whole, axis=2) <= 0.0).any(axis=1)
+    for wrong, why in ((repeated, "names a node twice"), (folded, "is folded, or has no extent")):
+        if wrong.any():
+            raise InputError(f"{table.name}, line {table.lines[rows[wrong][0]]}: a face {why}")
+    if len(np.unique(np.sort(numbers, axis=1), axis=0)) < len(numbers):
+        raise InputError(f"{table.name}: a face stands in it twice")
 
 
 def _joined(places: Array, known: Array) -> dict[str, Array]:

@@ -103,7 +103,8 @@ def read_modes(
             shapes = read_table(files.shapes)
             where = shapes if files.nodes is None else read_table(files.nodes)
             nodes = read_nodes(where, units.length)
-            given = given_modes_of(read_table(files.frequencies), shapes, nodes)
+            frequencies = read_table(files.frequencies)
+            given = given_modes_of(frequencies, shapes, nodes)
             model, told = modal_model(
                 given, nodes, units=units, unit_mass=unit_mass, reach=reach, surfaces=surfaces,
                 elements=files.elements, name=files.shapes.stem,
@@ -113,6 +114,8 @@ def read_modes(
             place=files.shapes.name, value="the modes", rule=str(error), remedy="docs/models.md"
         )
         return ReadModel(structure=None, problems=(problem,), files=read)
+    tables = {id(one): one for one in (where, shapes, frequencies)}.values()
+    told += tuple(said for one in tables for said in one.unused)
     return ReadModel(structure=model, units=units, told=told, files=read)
 
 

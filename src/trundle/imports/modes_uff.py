@@ -28,6 +28,7 @@ __all__ = ["is_universal", "read_universal_modes"]
 
 _LARGEST = 2_000_000_000  # bytes
 _NORMAL, _COMPLEX = 2, 3  # kinds of analysis of dataset 55
+_READ = {15, 55, 164, 2411, 2412}
 _REAL = 0.1  # largest share of a shape that may be off its one phase
 _FACES = {41: 3, 42: 3, 44: 4, 45: 4, 91: 3, 92: 3, 94: 4, 95: 4, 74: 3}  # thin and plane elements
 _BEGINS = re.compile(rb"^\s*-1[ \t]*\r?\n\s*\d{2,4}[ \t\r\n]")
@@ -70,6 +71,8 @@ def read_universal_modes(
         with guarded(path.name):
             sets = _sets(path)
             taken, said = agreed_units(_stated(sets), units)
+            odd = [one["type"] for one in sets if one.get("unread")]
+            said += tuple(f"passed over: dataset {kind}" for kind in odd)
             where = (
                 _nodes(sets, path, taken)
                 if nodes is None
@@ -110,8 +113,10 @@ def _sets(path: Path) -> list[dict[str, Any]]:
             warnings.simplefilter("ignore")
             file = pyuff.UFF(str(path))
             kinds = [int(kind) for kind in file.get_set_types()]
-            wanted = [i for i, kind in enumerate(kinds) if kind in {15, 55, 164, 2411, 2412}]
+            wanted = [i for i, kind in enumerate(kinds) if kind in _READ]
             sets = [file.read_sets(i) for i in wanted]
+            odd = {kind for kind in kinds if kind not in _READ}
+            sets += [{"type": kind, "unread": True} for kind in sorted(odd)]
     except Exception as error:  # its reader raises whatever its parsing meets
         told = str(error).replace(str(path), path.name) or type(error).__name__
         raise InputError(f"{path.name}: is a damaged universal file ({told[:120]})") from None

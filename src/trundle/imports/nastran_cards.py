@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from trundle.errors import InputError
@@ -29,14 +29,24 @@ class Card:
         Field 2 of the card is the first; blank ones are empty.
     place : str
         File and line.
+    looked_at : set of int
+        Numbers of the fields that were asked for.
     """
 
     name: str
     fields: tuple[str, ...]
     place: str
+    looked_at: set[int] = field(default_factory=set[int])
+
+    @property
+    def unread(self) -> tuple[int, ...]:
+        """Numbers of fields that hold something, and that nobody asked for."""
+        there = (i for i, value in enumerate(self.fields, start=2) if value)
+        return tuple(i for i in there if i not in self.looked_at)
 
     def get(self, number: int) -> str:
         """Return a field by its number in manuals, 2 for the first; empty if it is not there."""
+        self.looked_at.add(number)
         return self.fields[number - 2] if 0 <= number - 2 < len(self.fields) else ""
 
 

@@ -41,12 +41,15 @@ class NumberTable:
         Line of each row in the file.
     units : mapping of str to str
         Units by heading, small letters, where the heading or a line below it says them.
+    asked : set of str
+        Columns that were asked for.
     """
 
     name: str
     frame: Any
     lines: Int[Array, " rows"]
     units: Mapping[str, str] = field(default_factory=dict[str, str])
+    asked: set[str] = field(default_factory=set[str])
 
     def __len__(self) -> int:
         """Return how many rows there are."""
@@ -56,6 +59,12 @@ class NumberTable:
     def headings(self) -> tuple[str, ...]:
         """What its columns are called."""
         return tuple(map(str, self.frame.columns))
+
+    @property
+    def unused(self) -> tuple[str, ...]:
+        """What nobody asked for, in words; nothing, if all columns were."""
+        odd = [one for one in self.headings if one not in self.asked]
+        return (f"not used of {self.name}: {', '.join(odd)}",) if odd else ()
 
     def unit_of(self, words: Sequence[str]) -> str:
         """Return the unit of a column, empty where nothing says it."""
@@ -76,6 +85,7 @@ class NumberTable:
             return None
         import pandas as pd  # noqa: PLC0415 - a quarter of a second, for tables alone
 
+        self.asked.add(word)
         cells = self.frame[word]
         numbers = np.asarray(pd.to_numeric(cells, errors="coerce"), dtype=float)
         wrong = np.flatnonzero(~np.isfinite(numbers) & cells.notna().to_numpy())
@@ -111,6 +121,7 @@ class NumberTable:
             raise InputError(
                 f"{self.name}: no column {words[0]!r}; there are: {', '.join(self.headings)}"
             )
+        self.asked.add(word)
         cells = self.frame[word]
         empty = np.flatnonzero(cells.isna().to_numpy())
         if empty.size:
@@ -120,6 +131,7 @@ class NumberTable:
     def texts(self, words: Sequence[str]) -> Array | None:
         """Return a column as text, empty cells empty; None if there is none."""
         word = next((one for one in words if one in self.headings), None)
+        self.asked.add(word or "")
         return None if word is None else np.array(self.frame[word].fillna("").tolist(), dtype=str)
 
     def whole(self, words: Sequence[str]) -> Int[Array, " rows"]:

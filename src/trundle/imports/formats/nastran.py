@@ -102,11 +102,31 @@ def _taken(deck: Deck, card: Card) -> Problem | None:
         )
     try:
         _CARDS[card.name](deck, card)
+        _check_whole(card)
     except InputError as error:
         rule, _, value = str(error).partition("; got ")
         shown = f"{card.name} {card.get(2)}" + (f": {value}" if value else "")
         return Problem(place=card.place, value=shown, rule=rule, remedy="correct the card")
     return None
+
+
+_OF_NO_MATTER = {
+    "MAT1": range(7, 14), "MAT2": range(10, 19), "MAT8": range(10, 26), "PSHELL": range(10, 12),
+    "PBAR": range(10, 18), "GRID": range(9, 10), "CELAS2": range(8, 10), "PROD": range(6, 7),
+    "CONROD": range(8, 9), "PARAM": range(4, 10),
+}  # fmt: skip
+"""Fields of stresses, heat, damping and superelements, by their numbers."""
+
+_LISTS = {"PBEAM", "PBEAML", "PBARL", "PCOMP", "PBUSH", "PELAS", "SPC", "SPC1", "SPCADD", "RBE2"}
+"""Cards whose fields are taken as lists: they look at all of them."""
+
+
+def _check_whole(card: Card) -> None:
+    """Refuse fields that nobody reads: a card that is damaged swallows the next."""
+    ignored = _OF_NO_MATTER.get(card.name, ())
+    odd = [i for i in card.unread if i not in ignored and card.name not in _LISTS]
+    if odd:
+        raise InputError(f"field {odd[0]} is not read; got {card.get(odd[0])!r}")
 
 
 FORMAT = ModelFormat(

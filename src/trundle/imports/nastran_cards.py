@@ -40,7 +40,7 @@ class Card:
 
     @property
     def unread(self) -> tuple[int, ...]:
-        """Numbers of fields that hold something, and that nobody asked for."""
+        """Which fields hold something that nobody asked for, by their numbers."""
         there = (i for i, value in enumerate(self.fields, start=2) if value)
         return tuple(i for i in there if i not in self.looked_at)
 

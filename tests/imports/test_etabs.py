@@ -192,3 +192,17 @@ def test_what_is_wrong_or_not_read_is_told(tmp_path, old, new, words):
     found = read(tmp_path, FRAME.replace(old, new, 1))
     assert found.structure is None
     assert words in str(found.problems[0])
+
+
+def test_catalogue_sections_are_known_by_their_names(tmp_path):
+    """W18x35 in kips and inches: 10.3 in2 and 510 in4 (AISC manual)."""
+    text = FRAME.replace('SHAPE "Rectangular"  D 0.4  B 0.4', 'SHAPE "W18X35"')
+    text = text.replace('"KN"  "M"', '"KIP"  "IN"').replace("HEIGHT 3.5", "HEIGHT 140")
+    text = text.replace("HEIGHT 4", "HEIGHT 160")
+    for old, new in (("6 0", "240 0"), ("6 5", "240 200"), ("0 5", "0 200")):
+        text = text.replace(f"  {old}\n", f"  {new}\n")
+    found = read(tmp_path, text)
+    assert found.problems == ()
+    column = next(b for b in found.structure.beams if b.name == "C40").section
+    assert column.area == pytest.approx(10.3 * 0.0254**2, rel=0.01)
+    assert column.inertia_y == pytest.approx(510.0 * 0.0254**4, rel=0.01)

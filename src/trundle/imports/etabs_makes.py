@@ -11,6 +11,7 @@ from trundle.imports.etabs_statements import Statement, number_of
 from trundle.imports.sap_tables import Row, Table
 from trundle.structure import STEEL
 from trundle.structure.building import Profile
+from trundle.structure.profiles import rolled_sizes
 
 __all__ = ["Rows", "area_section", "frame_section"]
 
@@ -27,6 +28,8 @@ class Rows:
         Keys of each material, section and plate, by kind and name.
     gravity : float
         In the file's units.
+    length : float
+        Its unit of length [m].
     made : set of (str, str)
         What stands in a table already.
     """
@@ -34,6 +37,7 @@ class Rows:
     tables: dict[str, Table] = field(default_factory=dict[str, Table])
     properties: dict[str, dict[str, str]] = field(default_factory=dict[str, dict[str, str]])
     gravity: float = 9.80665
+    length: float = 1.0
     made: set[tuple[str, str]] = field(default_factory=set[tuple[str, str]])
 
     def row(self, table: str, place: str, **cells: object) -> None:
@@ -89,7 +93,7 @@ def frame_section(rows: Rows, one: Statement, name: str) -> None:
     if keys is None:
         raise InputError(f"{one.place}: names section {name!r}, which is not there")
     _material_row(rows, one, keys.get("MATERIAL", ""))
-    profile = _profile(one, name, keys)
+    profile = _profile(one, name, keys, rows.length)
     section = profile.section
     changed = {f"{k}Mod": keys[f"{k}MOD"] for k in ("A", "A2", "A3", "J", "I2", "I3", "M", "W")
                if f"{k}MOD" in keys}  # fmt: skip
@@ -101,7 +105,7 @@ def frame_section(rows: Rows, one: Statement, name: str) -> None:
     )  # fmt: skip
 
 
-def _profile(one: Statement, name: str, keys: Mapping[str, str]) -> Profile:
+def _profile(one: Statement, name: str, keys: Mapping[str, str], length: float) -> Profile:
     """Return a cross-section by its shape, in the file's units."""
     shape = keys.get("SHAPE", "").upper()
 
@@ -127,9 +131,15 @@ def _profile(one: Statement, name: str, keys: Mapping[str, str]) -> Profile:
     if shape in {"I/WIDE FLANGE", "STEEL I/WIDE FLANGE"}:
         depth, width, flange, web = sizes("D", "B", "TF", "TW")
         return Profile.i(depth=depth, width=width, web=web, flange=flange, material=STEEL)
-    raise InputError(
-        f"{one.place}: a section of shape {keys.get('SHAPE', 'none')!r} is not read; rectangles, "
-        "circles, pipes, tubes and I are"
+    try:  # of a catalogue, by its name
+        depth, width, web, flange, radius = (size / length for size in rolled_sizes(shape))
+    except InputError:
+        raise InputError(
+            f"{one.place}: a section of shape {keys.get('SHAPE', 'none')!r} is not read; "
+            "rectangles, circles, pipes, tubes, I, and W, IPE and HE sections by name are"
+        ) from None
+    return Profile.i(
+        depth=depth, width=width, web=web, flange=flange, radius=radius, material=STEEL
     )
 
 

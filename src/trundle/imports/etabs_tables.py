@@ -120,6 +120,7 @@ def _read_controls(
     model.units = ", ".join(one.words[1:])
     model.length = metres(model.units)
     model.rows.gravity = 9.80665 / model.length
+    model.rows.length = model.length
 
 
 def _read_storeys(model: _Model, statements: list[Statement]) -> None:

@@ -12,6 +12,7 @@ from models import small_floor, small_plan
 from studies import GOOD, MAP
 from trundle.report.figures import floor as floor_figures
 from trundle.report.figures import map as map_figures
+from trundle.report.figures import model as model_figures
 from trundle.response.quantities import mapped
 from trundle.structure import Floor, TriangleGroup
 from trundle.units import GAL, MICROMETRE_PER_SECOND
@@ -51,13 +52,14 @@ def test_a_plan_shows_beams_columns_routes_and_points_where_they_are(result):
 def test_a_model_without_a_plan_is_drawn_by_its_outline(result):
     """The edges that one element alone has: together the perimeter, here 36 m."""
     bare = replace(result, study=replace(result.study, plan=None))
-    names = drawn(floor_figures, bare)
-    assert "section" not in names
-    (axes,) = names["plan"].draw().axes
-    black = [
-        line for line in axes.lines if line.get_color() == "black" and len(line.get_xdata()) == 2
-    ]
-    length = sum(float(np.hypot(np.diff(p.get_xdata()), np.diff(p.get_ydata()))[0]) for p in black)
+    assert {"section", "plan"}.isdisjoint(drawn(floor_figures, bare))
+    (axes,) = drawn(model_figures, bare)["plan"].draw().axes
+    ends = next(
+        c
+        for c in axes.collections
+        if isinstance(c, LineCollection) and np.allclose(c.get_color(), [0, 0, 0, 1])
+    )
+    length = sum(float(np.linalg.norm(np.diff(one, axis=0))) for one in ends.get_segments())
     assert length == pytest.approx(36.0, rel=1e-9)
 
 

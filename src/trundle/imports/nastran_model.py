@@ -28,6 +28,7 @@ from trundle.structure import (
     TriangleGroup,
 )
 from trundle.structure.elements import GROUND, Elements, NodeInertia, ReleasedBeams
+from trundle.structure.frames import plate_areas
 
 __all__ = ["floor_of"]
 
@@ -143,7 +144,7 @@ class _Builder:
         if self._deck.consistent:
             return section
         name = self._plate_name(number)
-        self._lump(name, elements, section.mass_per_area * _areas(self._nodes[elements]))
+        self._lump(name, elements, section.mass_per_area * plate_areas(self._nodes[elements]))
         if isinstance(section, OrthotropicSection):
             return replace(section, mass_per_area=0.0, rotary_inertia=0.0)
         light = replace(section.material, density=0.0)
@@ -338,12 +339,3 @@ def _first_of(root: dict[int, int], node: int) -> int:
             raise InputError("grids follow each other in a ring by RBE2")
         seen.add(node)
     return node
-
-
-def _areas(corners: Array) -> Array:
-    """Return the areas of triangles, and of quadrilaterals by their diagonals [m2]."""
-    if corners.shape[1] == 3:
-        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    else:
-        across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    return 0.5 * np.linalg.norm(across, axis=1)

@@ -20,10 +20,10 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.imports.nastran_deck import Deck, Face, Laminate, PlaneLaw, Plate
 from trundle.structure import Material, OrthotropicSection, ShellSection
+from trundle.structure.plates import UNSHEARED
 
 __all__ = ["axis_of", "is_turned", "plate_section"]
 
-_STIFF = 1e4  # times its shear stiffness, of a plate that does not shear
 _SHEAR = 5.0 / 6.0
 _ALIKE = 1e-3
 _COUPLED = 1e-6  # of the largest stiffness: less couples nothing
@@ -119,7 +119,7 @@ def _without_shear(section: ShellSection) -> OrthotropicSection:
     laws = section.laws(np.eye(3)[None])
     (d, d_xy), d_t = laws.bending[0, :2], laws.bending[2, 2]
     (c, c_xy), c_t = laws.membrane[0, :2], laws.membrane[2, 2]
-    shear = _STIFF * float(laws.shear[0, 0])
+    shear = UNSHEARED * float(laws.shear[0, 0])
     return OrthotropicSection(
         bending=(d, d, d_xy, d_t),
         membrane=(c, c, c_xy, c_t),
@@ -134,7 +134,7 @@ def _plate(deck: Deck, plate: Plate, where: str, more: float) -> OrthotropicSect
     one, two = (_law(deck, number, where) for number in plate.materials[:2])
     third = _law(deck, plate.materials[2], where).across if plate.materials[2] else None
     thick = plate.thickness
-    stiff = _STIFF * thick * _SHEAR * one.plane[3]
+    stiff = UNSHEARED * thick * _SHEAR * one.plane[3]
     shear = (stiff, stiff) if third is None else tuple(plate.shear * thick * g for g in third)
     return OrthotropicSection(
         membrane=_times(one.plane, thick),
@@ -175,7 +175,7 @@ def _laminate(deck: Deck, laminate: Laminate, where: str) -> OrthotropicSection:
             f"{where} couples stretching, bending and twist: only laminates that are symmetric and "
             "balanced have an equivalent plate"
         )
-    stiff = _STIFF * _SHEAR * stretching[2, 2]
+    stiff = UNSHEARED * _SHEAR * stretching[2, 2]
     return OrthotropicSection(
         membrane=_four(stretching),
         bending=_four(bending),

@@ -12,6 +12,7 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.imports.sap_tables import Row, Table
 from trundle.structure import BeamSection, Material, OrthotropicSection, ShellSection
+from trundle.structure.plates import UNSHEARED
 
 __all__ = [
     "AreaMake",
@@ -30,7 +31,6 @@ _SYMMETRIC = {
 }  # fmt: skip
 T = TypeVar("T")
 _Four: TypeAlias = tuple[float, float, float, float]
-_STIFF = 1e4  # times its shear stiffness, of a plate that does not shear
 _SHELLS = {"shell-thin", "shell-thick", "shell"}
 _AREA_KEYS = ("f11", "f22", "f12", "m11", "m22", "m12", "v13", "v23")
 _MODIFIERS = ("F11Mod", "F22Mod", "F12Mod", "M11Mod", "M22Mod", "M12Mod", "V13Mod", "V23Mod")
@@ -328,7 +328,7 @@ def _plate(
         )  # fmt: skip
 
     shear = laws.shear.reshape(2, 2)
-    stiff = _STIFF if thin else 1.0
+    stiff = UNSHEARED if thin else 1.0
     return OrthotropicSection(
         bending=changed(laws.bending, f[3], f[4], f[5]),
         membrane=changed(membrane, f[0], f[1], f[2]),

@@ -18,6 +18,7 @@ from trundle.imports.sap_joints import Joints
 from trundle.imports.sap_tables import Row, Table
 from trundle.structure import PointMasses
 from trundle.structure.elements import NodeInertia
+from trundle.structure.frames import plate_areas
 
 __all__ = ["Lumps", "masses_of"]
 
@@ -64,12 +65,8 @@ class Lumps:
     def plates(self, per_area: Callable[[Area], float]) -> None:
         """Add mass over areas."""
         for area in self.areas:
-            at, corners = self.joints.at(area.elements), area.elements.shape[1]
-            if corners == 3:
-                across = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
-            else:
-                across = np.cross(at[:, 2] - at[:, 0], at[:, 3] - at[:, 1])
-            mass = 0.5 * np.linalg.norm(across, axis=1) * per_area(area) / corners
+            corners = area.elements.shape[1]
+            mass = plate_areas(self.joints.at(area.elements)) * per_area(area) / corners
             np.add.at(self._of(area.section), area.elements.ravel(), np.repeat(mass, corners))
 
     def groups(self) -> Iterator[PointMasses | NodeInertia]:

@@ -13,6 +13,7 @@ from trundle.errors import ComputationError, InputError
 from trundle.imports.model_format import ReadModel
 from trundle.structure import Floor, MatrixModel, ModalModel, Structure, Surface
 from trundle.structure.elements import GROUND, Elements
+from trundle.structure.frames import plate_areas
 from trundle.structure.links import own_motion
 
 __all__ = ["GroupSummary", "ModelSummary", "SurfaceSummary", "summary_of"]
@@ -183,9 +184,7 @@ def _size(xyz: Array) -> float:
         return 0.0
     if xyz.shape[1] == 2:
         return float(np.linalg.norm(xyz[:, 1] - xyz[:, 0], axis=1).sum())
-    last = xyz[:, -1] - xyz[:, 1] if xyz.shape[1] == 4 else xyz[:, 1] - xyz[:, 0]
-    across = np.cross(xyz[:, 2] - xyz[:, 0], last)
-    return float(0.5 * np.linalg.norm(across, axis=1).sum())
+    return float(plate_areas(xyz).sum())
 
 
 def _surface(one: Surface) -> SurfaceSummary:

@@ -8,10 +8,17 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.errors import InputError
 
-__all__ = ["beam_frames", "rotate_blocks", "shell_frames", "triangle_frames"]
+__all__ = ["beam_frames", "plate_areas", "rotate_blocks", "shell_frames", "triangle_frames"]
 
 _NEEDLE = 1e-9  # sine of an angle below which a triangle is a line
 _FLATNESS = 1e-3  # warp over size; a flat element cannot carry more and stay consistent
+
+
+def plate_areas(corners: Float[Array, "elements corners 3"]) -> Float[Array, " elements"]:
+    """Return the areas of triangles, or of quadrilaterals by their diagonals [m2]."""
+    first, last = (3, 1) if corners.shape[1] == 4 else (1, 0)
+    across = np.cross(corners[:, 2] - corners[:, 0], corners[:, first] - corners[:, last])
+    return 0.5 * np.linalg.norm(across, axis=1)
 
 
 def shell_frames(

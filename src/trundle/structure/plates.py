@@ -12,7 +12,10 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.sections import PlateLaws
 
-__all__ = ["OrthotropicSection"]
+__all__ = ["UNSHEARED", "OrthotropicSection"]
+
+UNSHEARED = 1e4
+"""Times its shear stiffness, of a plate that other programs let not shear at all."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -18,7 +18,7 @@ from trundle.exports import Subject, all_exports, export
 from trundle.imports import Asked, read_model
 from trundle.imports.modes_uff import read_universal_modes
 from trundle.results.store import write_results
-from trundle.run.playback import playback_of
+from trundle.run.playback import _blocks, playback_of
 from trundle.structure import (
     BeamGroup,
     BeamSection,
@@ -198,14 +198,7 @@ def test_a_crossing_is_the_first_run_of_its_study(tmp_path, results):
     study = result.study
     play = playback_of(study, n_frames=50)
     cell = next(iter(result.cells.values()))
-    node = play.nodes.tolist().index(
-        int(
-            np.argmin(
-                np.abs(study.floor.nodes[:, :2] - [3.0, 3.0]).sum(axis=1)
-                + 10 * (study.floor.nodes[:, 2] != 0)
-            )
-        )
-    )
+    node = play.nodes.tolist().index(at_point(study.floor, 3.0, 3.0))
     steps = np.round(play.time / (cell.history.time[1] - cell.history.time[0])).astype(int)
     np.testing.assert_allclose(
         play.motion[:, node],
@@ -220,6 +213,40 @@ def test_a_crossing_is_the_first_run_of_its_study(tmp_path, results):
     meshio = pytest.importorskip("meshio")
     frame = meshio.read(tmp_path / "c-0025.vtu").point_data["displacement [m]"]
     np.testing.assert_allclose(frame[play.nodes, 2], play.motion[25], rtol=1e-6, atol=1e-12)
+
+
+def test_a_crossing_step_by_step_is_its_run_too(monkeypatch):
+    """Without modes the run is repeated for blocks of places: what a later block gives is the run.
+
+    The point's history is computed in a run of the study by itself, with no other point.
+    """
+    direct = (
+        GOOD.split("[criteria]")[0]
+        .replace('f_max = "30 Hz"', 'integration = "newmark"')
+        .replace('ratio = "3 %"', 'rayleigh_alpha = "0.5 1/s", rayleigh_beta = "0.2 ms"')
+        .replace("runs = 2", "runs = 1")
+        .replace('dt = "5 ms"', 'dt = "20 ms"')
+    )
+    study = study_from_text(direct)
+    history = next(iter(run_study(study).cells.values())).history
+    monkeypatch.setattr("trundle.run.playback._BYTES", 3 * 8 * len(history.time) * 20)
+    play = playback_of(study, n_frames=50)
+    node = play.nodes.tolist().index(at_point(study.floor, 3.0, 3.0))
+    first, *others = _blocks(len(play.nodes), len(history.time) - 1)
+    assert (len(others), node >= first.stop) == (2, True)
+    steps = np.round(play.time / (history.time[1] - history.time[0])).astype(int)
+    largest = np.abs(history.displacement[:, 0]).max()
+    assert largest > 1e-5
+    np.testing.assert_allclose(
+        play.motion[:, node], history.displacement[steps, 0], atol=1e-9 * largest
+    )
+    np.testing.assert_allclose(play.wheels[0].forces, history.contact_forces[steps], rtol=1e-9)
+
+
+def at_point(floor, x, y):
+    """Return the node of the floor's slab nearest to a place."""
+    away = np.hypot(floor.nodes[:, 0] - x, floor.nodes[:, 1] - y) + 10 * np.abs(floor.nodes[:, 2])
+    return int(away.argmin())
 
 
 def test_maps_are_polygons_with_classes(tmp_path, results):
@@ -247,7 +274,7 @@ def test_maps_are_polygons_with_classes(tmp_path, results):
 def test_what_cannot_be_written_is_told(tmp_path, floor, modes):
     with pytest.raises(InputError, match="needs modes"):
         export(Subject(structure=floor), tmp_path / "a.uff")
-    with pytest.raises(InputError, match="of no format known; there are: "):
+    with pytest.raises(InputError, match="of no format that is written; there are: "):
         export(Subject(structure=floor), tmp_path / "a.dwg")
     with pytest.raises(InputError, match="cannot be written"):
         export(Subject(structure=floor), tmp_path / "none" / "a.bdf")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -114,59 +114,102 @@ def playback_of(
     tell = tell or silent
     which, on_road, plan = _chosen(study, case, road, method)
     sources = study.acting(which, on_road, plan)
-    interaction = plan.interaction
-    integration = interaction.integration
-    modes = None
-    if integration.f_max is not None:
-        modes = modes_of(
-            study.floor, f_max=integration.f_max, progress=lambda s: tell("modes", 0.4 * s)
-        )
-    prepared = prepare(study.floor, integration, interaction.damping, modes=modes)
+    prepared = _prepared(study, plan, lambda s: tell("modes", 0.4 * s))
     nodes, spots, normals = surface_nodes(study.floor)
-    duration = study.record_length(sources)
-    steps = _frames(sources, integration.dt, duration, n_frames)
-    one = {"first": spots[0]}
-    layout = lay_out(prepared, sources, method=interaction, points=one, duration=duration)
-    forces = _run(layout, study.seed, lambda s: tell("one crossing", 0.4 + 0.2 * s)).contact_forces[
-        0
-    ]
-    if isinstance(prepared, FloorInModes) and layout.rows is not None:
-        motion = field_motion(
-            prepared,
-            layout.rows,
-            forces,
-            point_rows(study.floor, {str(i): spot for i, spot in enumerate(spots)}),
-            steps,
-            at_rest=starts_standing(sources),
-            progress=lambda s: tell("its motion", 0.6 + 0.4 * s),
-        )
-    else:
-        motion = np.empty((len(steps), len(nodes)))
-        for part in _blocks(len(nodes), round(duration / integration.dt)):
-            points = {str(i): spots[i] for i in range(part.start, part.stop)}
-            layout = lay_out(
-                prepared, sources, method=interaction, points=points, duration=duration
-            )
-            done = part.start / len(nodes)
-            share = (part.stop - part.start) / len(nodes)
-            runs = _run(
-                layout,
-                study.seed,
-                lambda s, done=done, share=share: tell(
-                    "its motion", 0.6 + 0.4 * (done + share * s)
-                ),
-            )
-            motion[:, part] = runs.displacement[0, steps]
+    crossing = _Crossing(
+        prepared=prepared,
+        sources=sources,
+        plan=plan,
+        seed=study.seed,
+        duration=study.record_length(sources),
+    )
+    first = crossing.laid_out(spots[:1])
+    forces = _run(first, study.seed, lambda s: tell("one crossing", 0.4 + 0.2 * s)).contact_forces
+    steps = _frames(sources, plan.interaction.integration.dt, crossing.duration, n_frames)
+    motion = crossing.motion(
+        first, forces[0], spots, steps, lambda s: tell("its motion", 0.6 + 0.4 * s)
+    )
     return Playback(
         case=which.name,
         road=on_road,
         method=plan.name,
-        time=integration.dt * steps,
+        time=plan.interaction.integration.dt * steps,
         nodes=nodes,
         normals=normals,
         motion=motion,
-        wheels=tuple(_wheels(prepared, layout, forces, steps)),
+        wheels=tuple(_wheels(prepared, first, forces[0], steps)),
     )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Crossing:
+    """Hold what the first run of a cell is computed from."""
+
+    prepared: PreparedFloor
+    sources: tuple[Source, ...]
+    plan: MethodPlan
+    seed: int
+    duration: float
+
+    def laid_out(self, spots: Sequence[Spot]) -> Layout:
+        """Return the run as it is computed with histories at some places."""
+        return lay_out(
+            self.prepared,
+            self.sources,
+            method=self.plan.interaction,
+            points=_numbered(spots),
+            duration=self.duration,
+        )
+
+    def motion(
+        self,
+        first: Layout,
+        forces: Float[Array, "steps contacts"],
+        spots: Sequence[Spot],
+        steps: Int[Array, " frames"],
+        progress: Progress,
+    ) -> Float[Array, "frames places"]:
+        """Return how all places move [m], by modes from the forces, or by the run once more."""
+        if isinstance(self.prepared, FloorInModes) and first.rows is not None:
+            return field_motion(
+                self.prepared,
+                first.rows,
+                forces,
+                point_rows(self.prepared.floor, _numbered(spots)),
+                steps,
+                at_rest=starts_standing(self.sources),
+                progress=progress,
+            )
+        return self._motion_step_by_step(spots, steps, progress)
+
+    def _motion_step_by_step(
+        self, spots: Sequence[Spot], steps: Int[Array, " frames"], progress: Progress
+    ) -> Float[Array, "frames places"]:
+        """Return how all places move [m]: the run is repeated for each block of them."""
+        motion = np.empty((len(steps), len(spots)))
+        n_steps = round(self.duration / self.plan.interaction.integration.dt)
+        for part in _blocks(len(spots), n_steps):
+            done, share = part.start / len(spots), (part.stop - part.start) / len(spots)
+
+            def so_far(s: float, done: float = done, share: float = share) -> None:
+                progress(done + share * s)
+
+            runs = _run(self.laid_out(spots[part]), self.seed, so_far)
+            motion[:, part] = runs.displacement[0, steps]
+        return motion
+
+
+def _numbered(spots: Sequence[Spot]) -> dict[str, Spot]:
+    return {str(i): spot for i, spot in enumerate(spots)}
+
+
+def _prepared(study: Study, plan: MethodPlan, progress: Progress) -> PreparedFloor:
+    """Return the floor as a method computes it, its modes kept from earlier runs."""
+    integration = plan.interaction.integration
+    modes = None
+    if integration.f_max is not None:
+        modes = modes_of(study.floor, f_max=integration.f_max, progress=progress)
+    return prepare(study.floor, integration, plan.interaction.damping, modes=modes)
 
 
 def _chosen(

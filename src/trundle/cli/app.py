@@ -11,6 +11,7 @@ import typer
 
 from trundle import __version__
 from trundle.cli import options
+from trundle.cli.models import models
 from trundle.errors import ComputationError, InputError
 
 __all__ = ["app", "main"]
@@ -236,107 +237,7 @@ def new(
     commands.new(path)
 
 
-@app.command()
-def model(
-    path: Annotated[
-        Path, typer.Argument(help="Model of another program, or a study.", metavar="MODEL|STUDY")
-    ],
-    *,
-    kind: Annotated[
-        str, typer.Option("--kind", help="nastran, sap2000 ...; else told by it.")
-    ] = "",
-    units: Annotated[str, typer.Option("--units", help="Of the file: 'kN, m', 'kip, in'.")] = "",
-    ignore: Annotated[
-        str, typer.Option("--ignore", help="Cards or tables that are nothing of it, by commas.")
-    ] = "",
-    as_json: options.Json = False,
-) -> None:
-    """Sum up a model: units, masses, centre, groups, what can be stood on, first frequencies.
-
-    Nothing of a file is left out in silence: what is not read is told with its line, and nothing is
-    computed; what was passed over stands in the summary.
-    """
-    from trundle.cli import model_command
-
-    model_command.model(path, kind=kind, units=units, ignore=ignore, as_json=as_json)
-
-
-@app.command()
-def export(
-    source: Annotated[
-        Path,
-        typer.Argument(
-            help="Study, model of another program, or results folder.",
-            metavar="STUDY|MODEL|RESULTS",
-        ),
-    ],
-    out: Annotated[
-        Path, typer.Argument(help="File to write; its ending says what.", metavar="FILE")
-    ],
-    *,
-    kind: Annotated[
-        str, typer.Option("--kind", help="vtu, pvd, gltf, nastran, uff, geojson; else by FILE.")
-    ] = "",
-    f_max: Annotated[str, typer.Option("--f-max", help="Modes to here: '60 Hz'.")] = "",
-    case: Annotated[str, typer.Option("--case", help="Case that is played back.")] = "",
-    road: Annotated[str, typer.Option("--road", help="On which road.")] = "",
-    method: Annotated[str, typer.Option("--method", help="By which method.")] = "",
-    frames: Annotated[int, typer.Option("--frames", min=2, max=5000, help="Of a crossing.")] = 120,
-    units: Annotated[str, typer.Option("--units", help="Of a model: 'kN, m'.")] = "",
-    origin: Annotated[
-        str, typer.Option("--origin", help="Longitude, latitude of x = y = 0, for maps.")
-    ] = "",
-    quiet: options.Quiet = False,
-) -> None:
-    """Write for other programs: mesh and modes, a crossing, the model, modes alone, maps.
-
-    .vtu mesh with modes, .pvd a crossing in time (ParaView); .glb a scene with animated modes
-    (glTF); .bdf the model as Nastran bulk data, to be checked by any other program; .uff modes
-    (dataset 55); .geojson the maps of a results folder.
-    """
-    from trundle.cli import export_command
-
-    wanted = export_command.Wanted(
-        f_max=f_max, case=case, road=road, method=method, units=units, origin=origin, frames=frames
-    )
-    export_command.export_of(source, out, kind=kind, wanted=wanted, quiet=quiet)
-
-
-@app.command()
-def view(
-    source: Annotated[
-        Path,
-        typer.Argument(
-            help="Study, model of another program, or results folder.",
-            metavar="STUDY|MODEL|RESULTS",
-        ),
-    ],
-    *,
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="Page. \\[default: NAME-view.html]")
-    ] = None,
-    f_max: Annotated[str, typer.Option("--f-max", help="Modes to here: '60 Hz'.")] = "",
-    case: Annotated[str, typer.Option("--case", help="Case that is played back.")] = "",
-    road: Annotated[str, typer.Option("--road", help="On which road.")] = "",
-    method: Annotated[str, typer.Option("--method", help="By which method.")] = "",
-    frames: Annotated[int, typer.Option("--frames", min=2, max=2000, help="Of a crossing.")] = 240,
-    no_crossing: Annotated[
-        bool, typer.Option("--no-crossing", help="Without a crossing: mesh and modes alone.")
-    ] = False,
-    units: Annotated[str, typer.Option("--units", help="Of a model: 'kN, m'.")] = "",
-    quiet: options.Quiet = False,
-) -> None:
-    """Look at it: one page with the model in 3-D, its modes, and a crossing played back.
-
-    Sections are to scale, storeys and parts can be switched; supports, routes and points are shown;
-    the floor moves, larger than it does, while wheels and their forces pass. The page opens without
-    a network.
-    """
-    from trundle.cli import view_command
-    from trundle.cli.export_command import Wanted
-
-    wanted = Wanted(f_max=f_max, case=case, road=road, method=method, units=units, frames=frames)
-    view_command.view(source, out, wanted=wanted, crossing=not no_crossing, quiet=quiet)
+app.add_typer(models)
 
 
 @app.command()

@@ -7,23 +7,20 @@ from pathlib import Path
 
 import numpy as np
 
-from trundle._face import read_results
 from trundle._progress import Tell
-from trundle.cli.model_command import model_at
+from trundle.cli.opened import open_path
 from trundle.cli.screen import progress_bar
 from trundle.dynamics import Modes
 from trundle.errors import InputError
-from trundle.exports import Subject, all_exports, export
+from trundle.exports import Subject, export, format_of
 from trundle.exports.export_format import ExportFormat
-from trundle.results.study_result import StudyResult
 from trundle.run.mode_cache import modes_of
 from trundle.run.playback import Playback, playback_of
 from trundle.structure import ModalModel, Structure
 from trundle.study.model import Study
-from trundle.study_file.build import load_study
 from trundle.units import to_si
 
-__all__ = ["Wanted", "export_of", "subject_at"]
+__all__ = ["Wanted", "export_of", "modes_to", "played"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,9 +38,9 @@ class Wanted:
 
 def export_of(path: Path, out: Path, *, kind: str, wanted: Wanted, quiet: bool) -> None:
     """Write what is asked for, and say where it is."""
-    chosen = _format(out, kind)
+    chosen = format_of(out, kind or None)
     with progress_bar(quiet=quiet) as tell:
-        subject = subject_at(path, wanted, tell, chosen)
+        subject = _subject(path, wanted, tell, chosen)
         tell("writing", 1.0)
     main, *others = export(subject, out, chosen.kind)
     if not quiet:
@@ -51,32 +48,17 @@ def export_of(path: Path, out: Path, *, kind: str, wanted: Wanted, quiet: bool) 
         print(f"{main}: {chosen.name}{more}")
 
 
-def _format(out: Path, kind: str) -> ExportFormat:
-    for one in all_exports():
-        if one.kind == kind or (not kind and out.name.lower().endswith(one.suffix)):
-            return one
-    names = ", ".join(f"{one.kind} ({one.suffix})" for one in all_exports())
-    raise InputError(f"{kind or out.name}: of no format that is written; there are: {names}")
-
-
-def subject_at(path: Path, wanted: Wanted, tell: Tell, chosen: ExportFormat) -> Subject:
+def _subject(path: Path, wanted: Wanted, tell: Tell, chosen: ExportFormat) -> Subject:
     """Return what stands at a path: results, a study or a model, with what a format needs."""
-    study: Study | None = None
-    result: StudyResult | None = None
-    if path.is_dir():
-        result = read_results(path)
-        study = result.study
-        structure: Structure = study.floor
-    elif path.suffix.lower() == ".toml":
-        study = load_study(path)
-        structure = study.floor
-    else:
-        structure, _ = model_at(path, units=wanted.units)
-    subject = Subject(structure=structure, result=result, origin=_origin(wanted.origin))
+    opened = open_path(path, units=wanted.units)
+    study = opened.study
+    subject = Subject(
+        structure=opened.structure, result=opened.result, origin=_origin(wanted.origin)
+    )
     if study is not None and study.building is not None and study.building.north is not None:
         subject = replace(subject, north=float(np.radians(study.building.north)))
     if "modes" in (*chosen.needs, *chosen.uses):
-        subject = replace(subject, modes=modes_to(structure, wanted.f_max, tell, study))
+        subject = replace(subject, modes=modes_to(opened.structure, wanted.f_max, tell, study))
     if "playback" in chosen.needs:
         if study is None:
             raise InputError(f"{path}: a model alone has no crossing; name a study or its results")

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from trundle._face import read_results
 from trundle.cli.export_command import Wanted, modes_to, played
-from trundle.cli.model_command import model_at
+from trundle.cli.opened import open_path
 from trundle.cli.screen import progress_bar
 from trundle.errors import ComputationError, InputError
 from trundle.report.pages.view import write_view
-from trundle.structure import Structure
-from trundle.study.model import Study
-from trundle.study_file.build import load_study
 from trundle.views.scene import scene_of
 
 __all__ = ["view"]
@@ -20,14 +16,8 @@ __all__ = ["view"]
 
 def view(path: Path, out: Path | None, *, wanted: Wanted, crossing: bool, quiet: bool) -> None:
     """Write the page, and say where it is."""
-    study: Study | None = None
-    if path.is_dir():
-        study = read_results(path).study
-    elif path.suffix.lower() == ".toml":
-        study = load_study(path)
-    structure: Structure = (
-        study.floor if study is not None else model_at(path, units=wanted.units)[0]
-    )
+    opened = open_path(path, units=wanted.units)
+    structure, study = opened.structure, opened.study
     told = ""
     with progress_bar(quiet=quiet) as tell:
         playback = played(study, wanted, tell) if study is not None and crossing else None

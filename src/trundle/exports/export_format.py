@@ -18,7 +18,7 @@ from trundle.results.study_result import StudyResult
 from trundle.run.playback import Playback
 from trundle.structure import Structure
 
-__all__ = ["ExportFormat", "Subject", "all_exports", "export"]
+__all__ = ["ExportFormat", "Subject", "all_exports", "export", "format_of"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,6 +87,21 @@ def all_exports() -> tuple[ExportFormat, ...]:
     return tuple(importlib.import_module(name).EXPORT for name in sorted(modules))
 
 
+def format_of(path: Path, kind: str | None = None) -> ExportFormat:
+    """Return the format of a kind, or by the path's ending.
+
+    Raises
+    ------
+    InputError
+        There is none.
+    """
+    for one in all_exports():
+        if one.kind == kind or (kind is None and path.name.lower().endswith(one.suffix)):
+            return one
+    names = ", ".join(f"{one.kind} ({one.suffix})" for one in all_exports())
+    raise InputError(f"{kind or path.name}: of no format that is written; there are: {names}")
+
+
 def export(subject: Subject, path: Path, kind: str | None = None) -> tuple[Path, ...]:
     """Write a subject; return the files, the main one first.
 
@@ -106,7 +121,7 @@ def export(subject: Subject, path: Path, kind: str | None = None) -> tuple[Path,
     InputError
         No such format, a subject that lacks what it needs, a place that cannot be written to.
     """
-    chosen = _chosen(path, kind)
+    chosen = format_of(path, kind)
     for name in chosen.needs:
         if getattr(subject, name) is None:
             raise InputError(f"{chosen.name} needs {_WORDS[name]}, and there is none")
@@ -131,16 +146,3 @@ _WORDS = {
     "playback": "a crossing",
     "result": "results of a study",
 }
-
-
-def _chosen(path: Path, kind: str | None) -> ExportFormat:
-    known = all_exports()
-    if kind is not None:
-        found = next((one for one in known if one.kind == kind), None)
-    else:
-        found = next((one for one in known if path.name.lower().endswith(one.suffix)), None)
-    if found is None:
-        names = ", ".join(f"{one.kind} ({one.suffix})" for one in known)
-        what = f"no export is called {kind!r}" if kind else f"{path.name}: of no format known"
-        raise InputError(f"{what}; there are: {names}")
-    return found

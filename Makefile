@@ -21,7 +21,7 @@ help:
 	@touch $@
 
 .venv/.ready-dev: pyproject.toml constraints.txt scripts/setup_environment.py
-	$(PYTHON) scripts/setup_environment.py fast cluster web records seismic dev crosscheck
+	$(PYTHON) scripts/setup_environment.py fast cluster web records seismic roads dev crosscheck
 	@touch $@ .venv/.ready-run
 
 demo: .venv/.ready-run

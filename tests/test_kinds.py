@@ -30,7 +30,7 @@ def drive(**changes):
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: Crossing(TRUCK, ROUTE, "B"), 'road must be a RoadClass or a Profile.*Class."B"'),
+        (lambda: Crossing(TRUCK, ROUTE, "B"), 'road must be a Road, such as RoadClass."B"'),
         (lambda: Crossing("car", ROUTE, ROAD), "vehicle must be a Vehicle, such as library"),
         (lambda: Crossing(TRUCK, [(0, 3), (12, 3)], ROAD), "route must be a Route, such as"),
         (lambda: Crossing(TRUCK, ROUTE, ROAD, entry="abrupt"), 'such as entry_named."abrupt"'),

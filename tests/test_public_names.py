@@ -9,7 +9,8 @@ import pytest
 import trundle
 
 PACKAGES = (
-    "criteria", "dynamics", "errors", "imports", "mitigate", "records", "report", "response", "results",
+    "criteria", "dynamics", "errors", "imports", "mitigate", "profiles", "records", "report", "response",
+    "results",
     "road", "route", "run", "signals", "simulate", "structure", "study", "study_file", "units",
     "vehicle",
 )  # fmt: skip

@@ -24,6 +24,7 @@ T = TypeVar("T", bound=Callable[..., Any])
 
 _MISSING = object()
 _EXAMPLES = {
+    "Road": 'RoadClass("B")',
     "RoadClass": 'RoadClass("B")',
     "Criterion": 'find_criterion("VC-A"), or VC for the generic curves',
     "Vehicle": 'library_vehicle("container_truck_40ft")',

@@ -53,6 +53,7 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "damping coefficient": ("kg/s", "10 kN s/m"),
     "moment of inertia": ("kg*m**2", "4600 kg m2"),
     "acceleration": ("m/s**2", "0.3 gal"),
+    "roughness": ("m**3", "16e-6 m3"),
     "ratio": ("", "3 %"),
 }
 """Each kind of quantity: its SI unit and an example to copy."""

@@ -1,16 +1,31 @@
 """Describe, draw and read road roughness after ISO 8608."""
 
+from trundle.road.features import Feature, Shape, Tread, laid
+from trundle.road.flatness import flat_floor
 from trundle.road.iso8608 import (
     CLASS_NAMES,
     FITTED_RANGE,
     REFERENCE_ANGULAR_FREQUENCY,
     REFERENCE_FREQUENCY,
     RoadClass,
+    RoadSpectrum,
     RoughnessLevel,
+    Spectrum,
     class_limits,
 )
-from trundle.road.plausibility import profile_doubts
+from trundle.road.plausibility import check_roughness, profile_doubts
 from trundle.road.profile import Beyond, Profile, ProfileReader
+from trundle.road.road import FeaturedRoad, MeasuredRoad, Road
+from trundle.road.shapes import (
+    Bump,
+    CableProtector,
+    CosineHump,
+    ExpansionJoint,
+    Patch,
+    Pothole,
+    RailCrossing,
+    RampKink,
+)
 from trundle.road.survey import RoughnessFit, classify, fit_roughness, roughness_index
 from trundle.road.synthesis import RoughnessBand, synthesise, wave_power
 from trundle.road.temporal import temporal_psd, temporal_psd_two_sided
@@ -22,15 +37,34 @@ __all__ = [
     "REFERENCE_ANGULAR_FREQUENCY",
     "REFERENCE_FREQUENCY",
     "Beyond",
+    "Bump",
+    "CableProtector",
+    "CosineHump",
+    "ExpansionJoint",
+    "Feature",
+    "FeaturedRoad",
+    "MeasuredRoad",
+    "Patch",
+    "Pothole",
     "Profile",
     "ProfileReader",
+    "RailCrossing",
+    "RampKink",
+    "Road",
     "RoadClass",
+    "RoadSpectrum",
     "RoughnessBand",
     "RoughnessFit",
     "RoughnessLevel",
+    "Shape",
+    "Spectrum",
+    "Tread",
+    "check_roughness",
     "class_limits",
     "classify",
     "fit_roughness",
+    "flat_floor",
+    "laid",
     "profile_doubts",
     "roughness_index",
     "synthesise",

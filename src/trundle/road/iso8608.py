@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, Protocol, TypeAlias, get_args, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float
@@ -17,7 +17,9 @@ __all__ = [
     "REFERENCE_ANGULAR_FREQUENCY",
     "REFERENCE_FREQUENCY",
     "RoadClass",
+    "RoadSpectrum",
     "RoughnessLevel",
+    "Spectrum",
     "class_limits",
 ]
 
@@ -55,8 +57,56 @@ def class_limits(name: str) -> tuple[float, float, float]:
     return 0.5 * mean, mean, 2.0 * mean
 
 
+@runtime_checkable
+class Spectrum(Protocol):
+    """A straight line ``Gd(n) = Gd(n0) (n / n0)^-w``: what random roads are drawn from."""
+
+    @property
+    def roughness(self) -> float:
+        """Displacement PSD at the reference frequency, Gd(n0) [m3]."""
+        ...
+
+    @property
+    def waviness(self) -> float:
+        """Exponent w."""
+        ...
+
+    def displacement_psd(self, n: ArrayLike) -> Float[Array, ...]:
+        """Return the one-sided PSD Gd [m3] at spatial frequency n [cycle/m]."""
+        ...
+
+
+class _Random:
+    """What every road has that is random alone."""
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """Itself."""
+        assert isinstance(self, Spectrum)
+        return self
+
+    @property
+    def is_given(self) -> bool:
+        """Whether a part of it is the same in every run: none is."""
+        return False
+
+    @property
+    def start(self) -> float:
+        """Station that lies at a route's start: 0."""
+        return 0.0
+
+    def under(self, lateral: float, tread: Any) -> None:  # noqa: ANN401 - it has no given part
+        """Return its given part: none."""
+        del lateral, tread
+
+    def of(self, route: str) -> Any:  # noqa: ANN401 - its own class
+        """Return itself, the same on every route."""
+        del route
+        return self
+
+
 @dataclass(frozen=True)
-class RoadClass:
+class RoadClass(_Random):
     """Hold a road class of ISO 8608 with the line of it that is meant.
 
     Attributes
@@ -115,8 +165,44 @@ class RoadClass:
         return f"class {self.name} ({line}{exponent})"
 
 
+@dataclass(frozen=True, kw_only=True)
+class RoadSpectrum(_Random):
+    """Hold a roughness that is no class: measured, or that of a floor of some flatness.
+
+    Attributes
+    ----------
+    roughness : float
+        Displacement PSD at the reference frequency, Gd(n0) [m3].
+    waviness : float
+        Exponent w of ``Gd(n) = Gd(n0) (n / n0)^-w``, 1 to 4.
+    name : str
+        What it is, for reports.
+    """
+
+    roughness: float
+    waviness: float = 2.0
+    name: str = "given spectrum"
+
+    def __post_init__(self) -> None:
+        """Check both numbers."""
+        set_frozen(
+            self,
+            roughness=positive("roughness", self.roughness),
+            waviness=within("waviness", self.waviness, 1.0, 4.0),
+        )
+
+    def displacement_psd(self, n: ArrayLike) -> Float[Array, ...]:
+        """Return the one-sided PSD Gd [m3] at spatial frequency n [cycle/m]."""
+        return self.roughness * (np.asarray(n, float) / REFERENCE_FREQUENCY) ** -self.waviness
+
+    def __str__(self) -> str:
+        """Describe the roughness for a report."""
+        exponent = "" if self.waviness == 2.0 else f", w = {self.waviness:.3g}"
+        return f"{self.name} (Gd(n0) = {1e6 * self.roughness:.3g}e-6 m3{exponent})"
+
+
 def band_power(
-    road: RoadClass, low: Float[Array, " bands"], high: Float[Array, " bands"]
+    road: Spectrum, low: Float[Array, " bands"], high: Float[Array, " bands"]
 ) -> Float[Array, " bands"]:
     """Integrate Gd over bands [low, high] of spatial frequency in closed form [m2]."""
     w, n0 = road.waviness, REFERENCE_FREQUENCY

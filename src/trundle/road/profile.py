@@ -118,6 +118,31 @@ class Profile:
         return cls(station=s, elevation=z, slope=limited_slopes(s, z), beyond=beyond)
 
     @property
+    def spectrum(self) -> None:
+        """Spectrum of its random part: nothing of it is random."""
+        return
+
+    @property
+    def is_given(self) -> bool:
+        """Whether a part of it is the same in every run: all is."""
+        return True
+
+    @property
+    def start(self) -> float:
+        """Station that lies at a route's start: 0."""
+        return 0.0
+
+    def under(self, lateral: float, tread: object) -> Profile:
+        """Return itself: the same under every track."""
+        del lateral, tread
+        return self
+
+    def of(self, route: str) -> Profile:
+        """Return itself: the same on every route."""
+        del route
+        return self
+
+    @property
     def length(self) -> float:
         """Distance from first to last station [m]."""
         return float(self.station[-1] - self.station[0])

@@ -12,7 +12,7 @@ from scipy import fft
 from trundle._checks import non_negative, positive, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.road.iso8608 import FITTED_RANGE, RoadClass, band_power
+from trundle.road.iso8608 import FITTED_RANGE, Spectrum, band_power
 from trundle.road.profile import Profile
 
 __all__ = ["RoughnessBand", "synthesise", "wave_power"]
@@ -57,7 +57,7 @@ class RoughnessBand:
 
 
 def synthesise(
-    road: RoadClass,
+    road: Spectrum,
     *,
     length: float,
     rng: np.random.Generator,
@@ -69,7 +69,7 @@ def synthesise(
 
     Parameters
     ----------
-    road : RoadClass
+    road : Spectrum
         Spectrum.
     length : float
         Distance to cover [m]; the profile does not repeat within it.
@@ -132,7 +132,7 @@ def profile_of(
 
 
 def draw_spectrum(
-    road: RoadClass, band: RoughnessBand, n_samples: int, step: float, rng: np.random.Generator
+    road: Spectrum, band: RoughnessBand, n_samples: int, step: float, rng: np.random.Generator
 ) -> tuple[Array, Array]:
     """Return the Fourier coefficients of one random road, and their waves [cycle/m]."""
     amplitude, waves = _amplitudes(road, band, n_samples, step)
@@ -149,7 +149,7 @@ def draw_spectrum(
 
 @lru_cache(maxsize=16)  # an ensemble draws its roads from the same amplitudes
 def _amplitudes(
-    road: RoadClass, band: RoughnessBand, n_samples: int, step: float
+    road: Spectrum, band: RoughnessBand, n_samples: int, step: float
 ) -> tuple[Array, Array]:
     resolution = 1.0 / (n_samples * step)
     waves = resolution * np.arange(n_samples // 2 + 1)
@@ -164,13 +164,13 @@ def _amplitudes(
 
 
 def wave_power(
-    road: RoadClass, band: RoughnessBand, n: Float[Array, " waves"]
+    road: Spectrum, band: RoughnessBand, n: Float[Array, " waves"]
 ) -> Float[Array, " waves"]:
     """Share out the power of a band among waves, each to the middles of its neighbours.
 
     Parameters
     ----------
-    road : RoadClass
+    road : Spectrum
         Spectrum.
     band : RoughnessBand
         Band and tyre averaging.

@@ -8,7 +8,7 @@ from scipy import special
 
 from trundle._checks import frozen_array
 from trundle._typing import Array, ArrayLike
-from trundle.road.iso8608 import RoadClass
+from trundle.road.iso8608 import Spectrum
 from trundle.road.profile import Profile
 from trundle.road.synthesis import RoughnessBand, draw_spectrum, layout, profile_of
 
@@ -39,7 +39,7 @@ def track_coherence(n: ArrayLike, distance: ArrayLike) -> Float[Array, ...]:
 
 
 def synthesise_tracks(
-    road: RoadClass,
+    road: Spectrum,
     lateral: ArrayLike,
     *,
     length: float,
@@ -52,7 +52,7 @@ def synthesise_tracks(
 
     Parameters
     ----------
-    road : RoadClass
+    road : Spectrum
         Spectrum of every track.
     lateral : array_like of float, shape (n_tracks,)
         Lateral places of the tracks [m]; two at one place get the same profile.

@@ -12,6 +12,7 @@ from trundle.criteria import spectra_asked_for
 from trundle.response import (
     SpectrumQuantity,
 )
+from trundle.road import FeaturedRoad, Road
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import (
     Layout,
@@ -108,11 +109,19 @@ def plan_jobs(study: Study) -> tuple[Job, ...]:
 
 
 def _groups(study: Study) -> list[list[str]]:
-    """Return roads of one waviness together."""
-    groups: dict[float, list[str]] = {}
+    """Return roads together whose random parts differ by a factor, and by nothing else."""
+    groups: dict[object, list[str]] = {}
     for name, road in study.roads.items():
-        groups.setdefault(road.waviness, []).append(name)
+        features = road.features if isinstance(road, FeaturedRoad) else ()
+        base = road.base if isinstance(road, FeaturedRoad) else road
+        alike = None if base.is_given or base.spectrum is None else base.spectrum.waviness
+        groups.setdefault((name if alike is None else alike, features), []).append(name)
     return list(groups.values())
+
+
+def _roughness(road: Road) -> float:
+    """Return Gd(n0) of a road's random part [m3]; 1 of a road that has none."""
+    return 1.0 if road.spectrum is None else road.spectrum.roughness
 
 
 def _jobs(
@@ -121,7 +130,7 @@ def _jobs(
     """Give the job at the study's own speeds, and one for each further speed that is mapped."""
     case, method = what
     sources = study.acting(case, roads[0], method)
-    first = study.roads[roads[0]].roughness
+    first = _roughness(study.roads[roads[0]])
     length = study.record_length(sources)
     dt = method.interaction.integration.dt
     size = runs_at_once(sources, dt, length, len(study.points))
@@ -134,7 +143,7 @@ def _jobs(
         case=case,
         method=method,
         sources=sources,
-        factors={name: float(np.sqrt(study.roads[name].roughness / first)) for name in roads},
+        factors={name: float(np.sqrt(_roughness(study.roads[name]) / first)) for name in roads},
         parts=tuple(range(a, b) for a, b in itertools.pairwise(edges)),
         n_waves=max(2, _WAVES // n_random) if modal and n_random else 0,
         points=study.points,

@@ -13,7 +13,7 @@ from trundle._html import html_table
 from trundle._typing import Array
 from trundle.criteria import Criterion
 from trundle.errors import FitnessWarning, InputError
-from trundle.road import RoadClass, RoughnessBand
+from trundle.road import Road, RoughnessBand
 from trundle.route import ConstantSpeed
 from trundle.signals import Isolation
 from trundle.simulate import Crossing
@@ -85,7 +85,7 @@ class Study:
         Other sources of vibration by name.
     cases : tuple of Case
         Single routes first, then traffic.
-    roads : mapping of str to RoadClass
+    roads : mapping of str to Road
         Roads by label.
     band : RoughnessBand
         Waves that synthetic roads contain.
@@ -128,7 +128,7 @@ class Study:
     drives: Mapping[str, Drive]
     sources: Mapping[str, Source]
     cases: tuple[Case, ...]
-    roads: Mapping[str, RoadClass]
+    roads: Mapping[str, Road]
     band: RoughnessBand
     band_follows_dt: bool
     points: Mapping[str, Spot]

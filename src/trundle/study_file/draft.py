@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from trundle.errors import FitnessWarning, Problem
-from trundle.road import RoughnessBand
+from trundle.road import Road, RoughnessBand
 from trundle.signals import Isolation
 from trundle.simulate import Source
 from trundle.structure import FloorPlan, Structure, Surface, can_move
@@ -63,6 +63,8 @@ class Draft:
         Routes by name.
     sources : mapping of str to Source
         Other sources of vibration by name; a section adds its own.
+    roads : mapping of str to Road
+        By label.
     band : RoughnessBand or None
         Waves that roads contain.
     band_follows_dt : bool
@@ -92,6 +94,7 @@ class Draft:
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict[str, Vehicle])
     drives: Mapping[str, Drive] = field(default_factory=dict[str, Drive])
     sources: Mapping[str, Source] = field(default_factory=dict[str, Source])
+    roads: Mapping[str, Road] = field(default_factory=dict[str, Road])
     band: RoughnessBand | None = None
     band_follows_dt: bool = True
     methods: Mapping[str, MethodPlan] = field(default_factory=dict[str, MethodPlan])

@@ -39,6 +39,7 @@ __all__ = [
     "Ratio",
     "RotaryInertia",
     "RotationalStiffness",
+    "Roughness",
     "SecondMoment",
     "Section",
     "Speed",
@@ -79,6 +80,7 @@ _LARGEST = {
     "damping coefficient": 1e11,
     "moment of inertia": 1e10,
     "acceleration": 1e4,
+    "roughness": 1.0,
     "ratio": 1e3,
 }
 _SMALLEST = {"speed": 1e-10, "pressure": 1e5, "wavenumber": 1e-4}
@@ -170,6 +172,7 @@ Stiffness: TypeAlias = Annotated[float, _quantity("stiffness"), _NON_NEGATIVE]
 DampingCoefficient: TypeAlias = Annotated[float, _quantity("damping coefficient"), _NON_NEGATIVE]
 RotaryInertia: TypeAlias = Annotated[float, _quantity("moment of inertia"), _NON_NEGATIVE]
 Acceleration: TypeAlias = Annotated[float, _quantity("acceleration"), _POSITIVE]
+Roughness: TypeAlias = Annotated[float, _quantity("roughness"), _POSITIVE]
 Ratio: TypeAlias = Annotated[
     float,
     _quantity("ratio"),

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 from scipy import linalg
 
-from trundle._checks import frozen_array, set_frozen
+from trundle._checks import frozen_array, non_negative, set_frozen
 from trundle._typing import Array
 from trundle.dynamics import LinearSystem
 from trundle.errors import InputError, UnrestrainedModeError
@@ -49,6 +49,10 @@ class Vehicle:
         Names for tables and plots.
     source : str
         Where the numbers come from.
+    contact_patch : float
+        Length of road that a tyre stands on and averages over [m]; 0 where nobody says.
+    wheel_radius : float
+        Radius of hard wheels, which roll over a gap as a disc does [m]; 0 of soft tyres.
     """
 
     name: str
@@ -61,6 +65,8 @@ class Vehicle:
     lateral: Float[Array, " contacts"]
     contact_names: tuple[str, ...]
     source: str = ""
+    contact_patch: float = 0.0
+    wheel_radius: float = 0.0
 
     def __post_init__(self) -> None:
         """Freeze arrays and check shapes and signs."""
@@ -81,6 +87,8 @@ class Vehicle:
         for name in ("contact_stiffness", "contact_damping"):
             if np.any(vectors[name] < 0.0):
                 raise InputError(f"{name} must be 0 or more; got {vectors[name].tolist()}")
+        for name in ("contact_patch", "wheel_radius"):
+            set_frozen(self, **{name: non_negative(name, getattr(self, name))})
         set_frozen(self, contact_map=contact_map, **vectors)
 
     @property

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trundle.criteria import Verdict
-from trundle.road import CLASS_NAMES, class_limits
+from trundle.road import CLASS_NAMES, RoadClass, class_limits
 from trundle.signals import Averaging, nominal_frequency
 from trundle.study.model import Study
 from trundle.units import GAL, MICROMETRE_PER_SECOND
@@ -84,6 +84,8 @@ def road_words(study: Study) -> list[str]:
     return [
         f"{label}: {road.level.replace('_', ' ')} of class {road.name}, Gd(n0) = "
         f"{1e6 * road.roughness:.3g}e-6 m3"
+        if isinstance(road, RoadClass)
+        else f"{label}: {'level and smooth' if label == 'smooth' else road}"
         for label, road in study.roads.items()
     ]
 
@@ -92,7 +94,10 @@ def roughest_words(study: Study, road: str, verdict: Verdict) -> str:
     """Return up to what road a criterion is passed, as far as the margin tells."""
     if np.isnan(verdict.roughest) or verdict.criterion.quantity != "band_rms_velocity":
         return ""
-    value = verdict.roughest * study.roads[road].roughness
+    spectrum = study.roads[road].spectrum
+    if spectrum is None or study.roads[road].is_given:
+        return ""  # no other road differs from it by a factor alone
+    value = verdict.roughest * spectrum.roughness
     within = [name for name in CLASS_NAMES if class_limits(name)[2] <= value]
     name = f"all of class {within[-1]}" if within else "less than class A"
     bound = "at least" if verdict.margin >= 1.0 else "at most"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ from matplotlib.patches import Rectangle
 from trundle._typing import Array
 from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.results.study_result import StudyResult
-from trundle.road import RoadClass, RoughnessBand
+from trundle.road import FeaturedRoad, Road, RoadClass, RoughnessBand
 from trundle.route import Ramp, Route
 from trundle.simulate import Crossing, Modal, contact_forces
 from trundle.simulate.step_limits import longest_step
@@ -34,7 +34,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         One after the other, as they stand on the page.
     """
     study = result.study
-    road = next(iter(study.roads.values()))
+    road = _random_road(study.roads.values())
     speeds: dict[str, set[float]] = {}
     vehicles: dict[str, Vehicle] = {}
     for drive in study.drives.values():
@@ -58,11 +58,18 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         yield Drawing(
             name=f"axle_forces{end}",
             title=f"Dynamic axle forces: {name}",
-            caption="Contact forces on rigid ground without the static load, one realisation.",
+            caption="Contact forces on rigid ground without the static load, one realisation of a "
+            f"road of {road}.",
             draw=lambda one=vehicle, at=at: axle_forces_figure(
                 one, road, study.band, at, seed=study.seed
             ),
         )
+
+
+def _random_road(roads: Iterable[Road]) -> Road:
+    """Return the first road that is random, without joints; class A where none is."""
+    bare = (one.base if isinstance(one, FeaturedRoad) else one for one in roads)
+    return next((one for one in bare if not one.is_given), RoadClass("A"))
 
 
 def vehicle_figure(vehicle: Vehicle) -> Figure:
@@ -150,7 +157,7 @@ def vehicle_modes_figure(vehicle: Vehicle) -> Figure:
 
 def axle_forces_figure(
     vehicle: Vehicle,
-    road: RoadClass,
+    road: Road,
     band: RoughnessBand,
     speeds: Sequence[float],
     *,

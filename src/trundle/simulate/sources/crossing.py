@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from trundle._checks import finite, non_negative, one_of, set_frozen
 from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.road import Profile, RoadClass, RoughnessBand
+from trundle.road import FeaturedRoad, Road, RoughnessBand, Tread
 from trundle.route import Along, DriveIn, Entry, Route
 from trundle.vehicle import Vehicle
 
@@ -36,11 +36,13 @@ class Crossing:
         The vehicle.
     route : Route
         Where it drives, and how fast.
-    road : RoadClass or Profile
-        Random roughness of a class, drawn anew for each run, or one given profile, which
-        must cover run-in and route until the last wheel has left.
+    road : Road
+        Random roughness of a class, drawn anew for each run; a given profile, which must cover
+        run-in and route until the last wheel has left; a survey of several tracks; or one of
+        these with joints, humps and the like.
     band : RoughnessBand
-        Spatial frequencies of a random road; its contact patch averages a given profile too.
+        Spatial frequencies of a random road; its contact patch averages a given one too. A band
+        without a contact patch takes the vehicle's.
     entry : Entry
         How wheels come onto the floor; `entry_named` gives one by its name.
     run_in : float or None
@@ -51,7 +53,7 @@ class Crossing:
         Time at which the front axle is at the entry's start [s], 0 or more: the floor is at
         rest at time 0.
     chainage : float
-        Station of a given profile at the route's start [m].
+        Station of a given road at the route's start [m]; 0 takes what the road says.
     start : {"equilibrium", "level"}
         How the vehicle begins, before its run-in if it has one: at rest in equilibrium on the
         road under its wheels, or level, as over a road of no height, so that the height of the
@@ -61,7 +63,7 @@ class Crossing:
 
     vehicle: Vehicle
     route: Route
-    road: RoadClass | Profile
+    road: Road
     _: KW_ONLY
     band: RoughnessBand = field(default_factory=RoughnessBand)
     entry: Entry = field(default_factory=lambda: DriveIn(length=3.0))
@@ -80,13 +82,37 @@ class Crossing:
             )
         set_frozen(self, depart=non_negative("depart", self.depart))
         set_frozen(self, chainage=finite("chainage", self.chainage))
-        if self.chainage != 0.0 and not isinstance(self.road, Profile):
+        if self.chainage != 0.0 and not self.road.is_given:
             raise InputError(
                 "chainage is the station of a given profile at the route's start; got "
                 f"{self.chainage:g} m with a random road, which has no stations: leave it out"
             )
+        if self.band.contact_patch == 0.0 and self.vehicle.contact_patch > 0.0:
+            patch = self.vehicle.contact_patch
+            set_frozen(self, band=replace(self.band, contact_patch=patch))
+        set_frozen(self, road=self.road.of(self.route.name))
+        if self.chainage == 0.0:
+            set_frozen(self, chainage=self.road.start)
+        self._check_contact()
         if self.run_in is not None:
             set_frozen(self, run_in=non_negative("run_in", self.run_in))
+
+    def _check_contact(self) -> None:
+        """Refuse a point that meets joints and steps: it would be thrown up in no time."""
+        features = isinstance(self.road, FeaturedRoad) and self.road.features
+        if features and self.band.contact_patch == 0.0 and self.vehicle.wheel_radius == 0.0:
+            raise InputError(
+                f"vehicle {self.vehicle.name!r} meets joints or humps in a point, which no tyre "
+                "does: give the length of its contact patch (some 0.2 m of a truck's tyre, 0.1 m "
+                "of a forklift's solid one, 0.02 m of a polyurethane wheel)"
+            )
+
+    def tread(self, contact: int) -> Tread:
+        """Return how one of its wheels meets what is shorter than itself."""
+        vehicle = self.vehicle
+        stiffness, load = vehicle.contact_stiffness[contact], vehicle.static_forces[contact]
+        sinking = float(load / stiffness) if stiffness > 0.0 else np.inf
+        return Tread(sinking=max(sinking, 0.0), radius=vehicle.wheel_radius)
 
     @property
     def lead(self) -> float:

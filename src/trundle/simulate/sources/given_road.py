@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
-from trundle.road import Profile, profile_doubts
+from trundle.road import FeaturedRoad, Profile, profile_doubts
 from trundle.route import Along
 from trundle.simulate.sources.crossing import Crossing
 from trundle.simulate.sources.profile_step import check_profile_step, hidden_by_step
@@ -63,19 +63,49 @@ def given_road_doubts(
     found: list[FitnessWarning] = []
     for crossing in crossings:
         length = crossing.exit_time if duration is None else duration
-        if not isinstance(crossing.road, Profile) or not np.isfinite(length):
+        if not crossing.road.is_given or not np.isfinite(length):
             continue
-        lying = _lay(crossing, crossing.along(*_alone(crossing, dt, max(length, 2.0 * dt))))
-        hidden = hidden_by_step(crossing, lying.road, lying.needed, speed=lying.speed, dt=dt)
-        if hidden.force > _HIDDEN:
-            found.append(
-                FitnessWarning(
-                    subject=f"road between steps, {crossing.route.name}",
-                    message=f"{hidden}; a shorter step, or the tyre's contact patch, would show it",
-                )
+        along = crossing.along(*_alone(crossing, dt, max(length, 2.0 * dt)))
+        for profile, contacts in _tracks(crossing):
+            found += _track_doubts(crossing, profile, _only(along, contacts), dt)
+    # tracks of one road are doubted for the same reasons at almost the same places
+    return tuple({one.subject: one for one in reversed(found)}.values())[::-1]
+
+
+def _track_doubts(
+    crossing: Crossing, profile: Profile, along: Along, dt: float
+) -> list[FitnessWarning]:
+    lying = _lay(crossing, profile, along)
+    hidden = hidden_by_step(crossing, lying.road, lying.needed, speed=lying.speed, dt=dt)
+    found: list[FitnessWarning] = []
+    if hidden.force > _HIDDEN:
+        found.append(
+            FitnessWarning(
+                subject=f"road between steps, {crossing.route.name}",
+                message=f"{hidden}; a shorter step, or the tyre's contact patch, would show it",
             )
-        found += profile_doubts(crossing.road)
-    return tuple(found)
+        )
+    # heights of features are what somebody wrote, and no survey
+    return found if isinstance(crossing.road, FeaturedRoad) else [*found, *profile_doubts(profile)]
+
+
+def _tracks(crossing: Crossing) -> list[tuple[Profile, list[int]]]:
+    """Return the profiles under a vehicle's wheels, each with the contacts that roll on it."""
+    found: list[tuple[Profile, list[int]]] = []
+    for contact, aside in enumerate(crossing.vehicle.lateral):
+        profile = crossing.road.under(float(aside), crossing.tread(contact))
+        if profile is None:
+            profile = Profile.smooth()
+        same = next((contacts for one, contacts in found if one is profile), None)
+        if same is None:
+            found.append((profile, [contact]))
+        else:
+            same.append(contact)
+    return found
+
+
+def _only(along: Along, contacts: list[int]) -> Along:
+    return replace(along, station=along.station[:, contacts], speed=along.speed[:, contacts])
 
 
 def _alone(crossing: Crossing, dt: float, duration: float) -> tuple[Array, float]:
@@ -94,14 +124,20 @@ def given_road(crossing: Crossing, along: Along) -> GivenRoad:
         A profile that does not cover the way that the wheels need, or that rises and falls
         within a step.
     """
-    lying = _lay(crossing, along)
-    station, road = lying.station, lying.road
-    elevation, slope = road.at(station)
-    slope = _over_kinks(road, station, slope)
-    level, grade = (0.0, 0.0) if crossing.start == "level" else _plane(crossing.vehicle, lying)
-    return GivenRoad(
-        elevation=elevation - level - grade * (station - station[0, 0]), slope=slope - grade
-    )
+    elevation, slope = np.empty(along.station.shape), np.empty(along.station.shape)
+    came = _Came.of(along.station.shape[1])
+    for profile, contacts in _tracks(crossing):
+        lying = _lay(crossing, profile, _only(along, contacts))
+        z, g = lying.road.at(lying.station)
+        elevation[:, contacts] = z
+        slope[:, contacts] = _over_kinks(lying.road, lying.station, g)
+        _put(came, contacts, crossing.vehicle, lying)
+    if crossing.start == "level":
+        return GivenRoad(elevation=elevation, slope=slope)
+    level = came.here[0]
+    grade = float(came.grade.mean()) if _follows_planes(crossing.vehicle) else 0.0
+    way = along.station - along.station[0, 0]
+    return GivenRoad(elevation=elevation - level - grade * way, slope=slope - grade)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -115,10 +151,9 @@ class _Lying:
     speed: float  # the largest [m/s]
 
 
-def _lay(crossing: Crossing, along: Along) -> _Lying:
-    """Lay the profile under the wheels, and refuse it where it cannot be right."""
-    assert isinstance(crossing.road, Profile)  # the caller has looked
-    profile = crossing.road.averaged(crossing.band.contact_patch)
+def _lay(crossing: Crossing, given: Profile, along: Along) -> _Lying:
+    """Lay a profile under the wheels of its track, and refuse it where it cannot be right."""
+    profile = given.averaged(crossing.band.contact_patch)
     station = along.station + crossing.chainage
     needed = _needed(crossing, station)
     _check_cover(crossing, profile, needed)
@@ -226,11 +261,23 @@ def _kinks(profile: Profile) -> Array:
     return np.sort(jumps)
 
 
-def _plane(vehicle: Vehicle, lying: _Lying) -> tuple[float, float]:
-    """Return the elevation under the front wheel [m], and the grade come along [m/m].
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Came:
+    """The elevation under every wheel at first [m], and the grade that it came along [m/m]."""
 
-    The grade is the mean under all wheels over the way that each has come in one period of
-    the vehicle's slowest motion, as far as it is known.
+    here: Array
+    grade: Array
+
+    @classmethod
+    def of(cls, n_contacts: int) -> _Came:
+        return cls(here=np.zeros(n_contacts), grade=np.zeros(n_contacts))
+
+
+def _put(came: _Came, contacts: list[int], vehicle: Vehicle, lying: _Lying) -> None:
+    """Put in what wheels of one track have come along.
+
+    The grade is the mean over the way that each has come in one period of the vehicle's slowest
+    motion, as far as it is known.
     """
     start, profile = lying.station[0], lying.road
     slowest = float(np.abs(vehicle.poles()).min(initial=np.inf))
@@ -240,8 +287,7 @@ def _plane(vehicle: Vehicle, lying: _Lying) -> tuple[float, float]:
     way = start - behind
     some = way > _ROUNDING
     chord = (here - profile.at(behind)[0]) / np.where(some, way, 1.0)
-    grade = float(np.where(some, chord, steep).mean())
-    return float(here[0]), grade if _follows_planes(vehicle) else 0.0
+    came.here[contacts], came.grade[contacts] = here, np.where(some, chord, steep)
 
 
 def _follows_planes(vehicle: Vehicle) -> bool:

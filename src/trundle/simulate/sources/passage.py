@@ -12,7 +12,7 @@ from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.dynamics import Modes
 from trundle.errors import FitnessWarning
-from trundle.road import FITTED_RANGE, Profile, RoadClass
+from trundle.road import FITTED_RANGE
 from trundle.route import Along, Track, follow
 from trundle.simulate.sources.axle_hop import axle_hop_warnings
 from trundle.simulate.sources.crossing import Crossing
@@ -77,7 +77,7 @@ class Passage:
     @property
     def random(self) -> bool:
         """Whether its road is drawn anew for every run."""
-        return isinstance(self.crossing.road, RoadClass)
+        return self.crossing.road.spectrum is not None
 
     @property
     def leaves(self) -> float:
@@ -110,18 +110,20 @@ class Passage:
         """Return what its road pushes at the wheels."""
         crossing = self.crossing
         along = crossing.along(time, begins)
-        if isinstance(crossing.road, Profile):
-            return RoadInputs(crossing, along, _Same(given_road(crossing, along)))
-        return RoadInputs(crossing, along, RandomRoad(crossing, crossing.road, along, seed))
+        spectrum = crossing.road.spectrum
+        given = given_road(crossing, along) if crossing.road.is_given else None
+        random = None if spectrum is None else RandomRoad(crossing, spectrum, along, seed)
+        return RoadInputs(crossing, along, _Parts(given, random, along.station.shape))
 
     def waves(
         self, time: Float[Array, " times"], begins: float, n_waves: int
     ) -> tuple[WaveSet, ...]:
         """Return the waves of a random road, each set from an independent source."""
         crossing = self.crossing
-        if not isinstance(crossing.road, RoadClass):
+        spectrum = crossing.road.spectrum
+        if spectrum is None:
             return ()
-        return tuple(waves_under(crossing, crossing.road, crossing.along(time, begins), n_waves))
+        return tuple(waves_under(crossing, spectrum, crossing.along(time, begins), n_waves))
 
     def stands_at(self, time: float) -> tuple[tuple[float, float] | None, int]:
         """Return where the front axle stands at a time, None when off; and how many wheels do."""
@@ -132,11 +134,12 @@ class Passage:
         crossing = self.crossing
         clock = np.linspace(0.0, max(0.0, ends - crossing.depart), 201)
         speed = float(np.max(crossing.route.law.speed(clock)))
-        if not isinstance(crossing.road, Profile):
+        if crossing.road.spectrum is not None:
             return speed * crossing.band.n_max
-        apart = np.diff(crossing.road.station)
+        profile = crossing.road.under(float(crossing.vehicle.lateral[0]), crossing.tread(0))
+        apart = np.diff(np.zeros(0) if profile is None else profile.station)
         # samples hold no wave shorter than two; of a few points nobody knows what they hold
-        return speed * 0.5 / float(apart[apart > 0.0].min())
+        return speed * 0.5 / float(apart[apart > 0.0].min(initial=np.inf))
 
     def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
         """Refuse a given profile that the step cannot show; return doubts about one."""
@@ -152,26 +155,30 @@ class Passage:
         return tuple(found)
 
 
-class _Same:
-    """A given road: the same in every run."""
+class _Parts:
+    """A road under the wheels: its given part, the same in every run, and its random part."""
 
-    def __init__(self, road: GivenRoad) -> None:
-        self._road = np.array([road.elevation, road.slope])
+    def __init__(
+        self, given: GivenRoad | None, random: RandomRoad | None, shape: tuple[int, ...]
+    ) -> None:
+        self._random = random
+        self._given = np.zeros((2, *shape))
+        if given is not None:
+            self._given[0], self._given[1] = given.elevation, given.slope
 
     def draw(self, run: int) -> Float[Array, "2 times contacts"]:
         """Return elevation [m] and slope under the wheels."""
-        del run
-        return self._road
+        return self._given if self._random is None else self._random.draw(run) + self._given
 
     def still(self) -> Float[Array, "2 times contacts"]:
-        """Return the same."""
-        return self._road
+        """Return the same without the random part."""
+        return self._given
 
 
 class RoadInputs:
     """What a road pushes at the wheels of a vehicle."""
 
-    def __init__(self, crossing: Crossing, along: Along, road: RandomRoad | _Same) -> None:
+    def __init__(self, crossing: Crossing, along: Along, road: _Parts) -> None:
         self._road, self._level = road, crossing.start == "level"
         self._stiffness = crossing.vehicle.contact_stiffness
         self._rolling = crossing.vehicle.contact_damping * along.speed
@@ -191,7 +198,7 @@ class RoadInputs:
 
 
 def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
-    if not isinstance(crossing.road, RoadClass):
+    if crossing.road.spectrum is None:
         return []
     speed = float(crossing.route.law.speed(0.0))
     n_max = crossing.band.n_max

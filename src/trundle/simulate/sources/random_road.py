@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.road import Profile, ProfileReader, RoadClass, synthesise_tracks
+from trundle.road import Profile, ProfileReader, Spectrum, synthesise_tracks
 from trundle.route import Along
 from trundle.simulate.sources.crossing import Crossing
 
@@ -25,7 +25,7 @@ class RandomRoad:
     meets the same road whether it drives alone or with others.
     """
 
-    def __init__(self, crossing: Crossing, road: RoadClass, along: Along, seed: int) -> None:
+    def __init__(self, crossing: Crossing, road: Spectrum, along: Along, seed: int) -> None:
         self._crossing, self._road, self._seed = crossing, road, seed
         self._along = along
         self._tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)

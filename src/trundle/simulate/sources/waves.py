@@ -10,7 +10,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.road import RoadClass, RoughnessBand, track_coherence, wave_power
+from trundle.road import RoughnessBand, Spectrum, track_coherence, wave_power
 from trundle.route import Along
 from trundle.simulate.sources.crossing import Crossing
 from trundle.simulate.sources.source import WaveSet
@@ -38,7 +38,7 @@ class Waves:
 
 
 def place_waves(
-    road: RoadClass,
+    road: Spectrum,
     band: RoughnessBand,
     n_waves: int,
     *,
@@ -48,7 +48,7 @@ def place_waves(
 
     Parameters
     ----------
-    road : RoadClass
+    road : Spectrum
         Spectrum.
     band : RoughnessBand
         Spatial frequencies.
@@ -77,7 +77,7 @@ def place_waves(
 
 
 def waves_under(
-    crossing: Crossing, road: RoadClass, along: Along, n_waves: int
+    crossing: Crossing, road: Spectrum, along: Along, n_waves: int
 ) -> Iterator[WaveSet]:
     """Send the waves of a crossing's road to its wheels, one independent source at a time.
 
@@ -85,8 +85,8 @@ def waves_under(
     ----------
     crossing : Crossing
         Who drives.
-    road : RoadClass
-        Its road.
+    road : Spectrum
+        The random part of its road.
     along : Along
         Where its wheels are.
     n_waves : int

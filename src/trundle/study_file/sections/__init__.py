@@ -16,6 +16,7 @@ from trundle.study_file.kinds import SectionKind
 from trundle.study_file.sections import (
     building,
     criteria,
+    feature,
     floor,
     general,
     map,
@@ -29,7 +30,20 @@ from trundle.study_file.sections import (
 
 __all__ = ["FILES", "KINDS"]
 
-_FIRST = (general, floor, building, vehicle, route, road, method, criteria, point, map, published)
+_FIRST = (
+    general,
+    floor,
+    building,
+    vehicle,
+    route,
+    road,
+    feature,
+    method,
+    criteria,
+    point,
+    map,
+    published,
+)
 _OTHERS = tuple(
     import_module(f"{__name__}.{found.name}")
     for found in iter_modules(__path__)
@@ -47,6 +61,7 @@ KINDS: tuple[SectionKind, ...] = (
     published.PUBLICATION,
     vehicle.VEHICLE,
     road.ROAD,
+    feature.FEATURE,
     route.ROUTE,
     route.TRAFFIC,
     point.POINT,

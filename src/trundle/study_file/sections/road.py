@@ -4,34 +4,84 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from pathlib import PurePath
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
 
 from trundle._words import in_kmh
-from trundle.errors import Problem
-from trundle.road import RoadClass, RoughnessBand
+from trundle.errors import FitnessWarning, Problem
+from trundle.profiles import ProfileOptions, read_profile
+from trundle.road import Profile, Road, RoadClass, RoadSpectrum, RoughnessBand, flat_floor
 from trundle.study.plans import Drive, MethodPlan
 from trundle.study_file.attempt import attempted
 from trundle.study_file.draft import Draft, unique
 from trundle.study_file.fields import (
     Flag,
+    Length,
+    Line,
+    Name,
     NonNegativeLength,
     Number,
+    Roughness,
     Section,
     Wavenumber,
 )
+from trundle.study_file.given_roads import given_road_problems
 from trundle.study_file.kinds import SectionKind
 
 __all__ = ["ROAD", "ROUGHNESS", "build", "fields", "problems", "road_label"]
 
 
-class RoadSection(Section):
-    """A road class."""
+_Class = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
 
-    class_: Annotated[Literal["A", "B", "C", "D", "E", "F", "G", "H"], Field(alias="class")]
+
+class RoadSection(Section):
+    """A road: a class, a roughness, a floor's flatness, a measured profile, or smooth."""
+
+    name: Name | None = None
+    class_: Annotated[_Class | None, Field(alias="class")] = None
     level: Literal["lower", "geometric_mean", "upper"] = "geometric_mean"
     waviness: Annotated[Number, Field(ge=1.0, le=4.0)] = 2.0
+    roughness: Roughness | None = None
+    flatness: Line | None = None
+    smooth: Flag = False
+    file: Line | None = None
+    from_: Annotated[Length | None, Field(alias="from")] = None
+    beyond: Literal["unknown", "mirror", "level"] = "unknown"
+    station_unit: Line = ""
+    unit: Line = ""
+    tracks: tuple[Line, ...] = ()
+    lateral: tuple[Length, ...] = ()
+    detrend: Flag = True
+
+    @model_validator(mode="after")
+    def _check_kind(self) -> Self:
+        given = [key for key in _WAYS if self.model_fields_set & {key} and getattr(self, key)]
+        names = [key.rstrip("_") for key in given]
+        if len(given) != 1:
+            rule = (
+                "a road is one of: class, roughness, flatness, file, smooth = true; "
+                f"got {' and '.join(names) or 'none of them'}"
+            )
+            raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+        extra = self.model_fields_set - {"name", *given, *_WITH[given[0]]}
+        if extra:
+            keys = ", ".join(sorted(key.rstrip("_") for key in extra))
+            rule = f"a road of {names[0]} has no {keys}: leave it out"
+            raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+        return self
+
+
+_WAYS = ("class_", "roughness", "flatness", "file", "smooth")
+_WITH: dict[str, tuple[str, ...]] = {
+    "class_": ("level", "waviness"),
+    "roughness": ("waviness",),
+    "flatness": (),
+    "file": ("from_", "beyond", "station_unit", "unit", "tracks", "lateral", "detrend"),
+    "smooth": (),
+}
 
 
 class RoughnessSection(Section):
@@ -48,7 +98,7 @@ ROAD = SectionKind(name="road", schema=RoadSection, form="list", required=True)
 ROUGHNESS = SectionKind(name="roughness", schema=RoughnessSection, form="table")
 
 
-def build(draft: Draft) -> tuple[Draft, list[Problem]]:
+def _with_band(draft: Draft) -> tuple[Draft, list[Problem]]:
     """Return the draft with its waves."""
     section = draft.file.tables.get("roughness")
     if section is None:
@@ -65,35 +115,91 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     return replace(draft, band=band, band_follows_dt=section.n_max_follows_dt), found
 
 
+def build(draft: Draft) -> tuple[Draft, list[Problem]]:
+    """Return the draft with its waves and roads."""
+    draft, found = _with_band(draft)
+    roads: dict[str, Road] = {}
+    for i, section in draft.file.lists.get("road", []):
+        key = next(key for key in _WAYS if getattr(section, key))
+        place = f"road[{i + 1}].{key.rstrip('_')}"
+        if section.file is not None:
+            draft, made, mistakes = _measured(draft, section, place)
+        else:
+            made, mistakes = attempted(place, lambda s=section: road_of(s))
+        found += mistakes
+        if made is not None:
+            roads[road_label(section)] = made
+    return replace(draft, roads=roads), found
+
+
 def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the sections."""
-    return {
-        "roads": {road_label(r): road_of(r) for r in draft.file.items("road")},
-        "band": draft.band,
-        "band_follows_dt": draft.band_follows_dt,
-    }
+    return {"roads": draft.roads, "band": draft.band, "band_follows_dt": draft.band_follows_dt}
 
 
 def problems(draft: Draft) -> Iterator[Problem]:
-    """Give waves that no step can follow, and roads of one name."""
+    """Give waves that no step can follow, roads of one name, and surveys that do not reach."""
     if draft.band is not None:
         yield from _roughness(
             draft.drives, draft.methods, draft.band, follows_dt=draft.band_follows_dt
         )
+        sections = draft.file.lists.get("road", [])
+        places = {road_label(s): f"road[{i + 1}]" for i, s in sections}
+        yield from given_road_problems(draft, places)
     yield from unique("road", [road_label(s) for s in draft.file.items("road")])
 
 
-def road_of(section: RoadSection) -> RoadClass:
-    """Return a road class."""
-    return RoadClass(section.class_, level=section.level, waviness=section.waviness)
+def road_of(section: RoadSection) -> Road:
+    """Return a road that stands in the study file itself."""
+    if section.class_ is not None:
+        return RoadClass(section.class_, level=section.level, waviness=section.waviness)
+    if section.flatness is not None:
+        return flat_floor(section.flatness)
+    if section.roughness is not None:
+        name = section.name or "given roughness"
+        return RoadSpectrum(roughness=section.roughness, waviness=section.waviness, name=name)
+    return Profile.smooth()
 
 
 def road_label(section: RoadSection) -> str:
-    """Return the short label of a road: the class letter, with its level if not the mean."""
+    """Return the short label of a road: its name, or what it is in a word."""
+    if section.name is not None:
+        return section.name
+    if section.file is not None:
+        return PurePath(section.file).stem
+    if section.class_ is None:
+        return section.flatness or ("smooth" if section.smooth else f"{section.roughness:.3g} m3")
     label = section.class_
     if section.level != "geometric_mean":
         label += f" {section.level}"
     return label if section.waviness == 2.0 else f"{label} w={section.waviness:g}"
+
+
+def _measured(
+    draft: Draft, section: RoadSection, place: str
+) -> tuple[Draft, Road | None, list[Problem]]:
+    """Return a road that is read from a file, and the draft that keeps the file."""
+    name = section.file or ""
+    path = draft.files.get(name, draft.folder / name)
+    options = ProfileOptions(
+        station_unit=section.station_unit,
+        unit=section.unit,
+        tracks=section.tracks,
+        lateral=section.lateral,
+        detrend=section.detrend,
+    )
+    read, found = attempted(
+        place, lambda: read_profile(path, options), "docs/roads.md says what is read"
+    )
+    if read is None:
+        return draft, None, found
+    first = float(read.road.tracks[0].station[0])
+    start = first if section.from_ is None else section.from_
+    tracks = tuple(replace(track, beyond=section.beyond) for track in read.road.tracks)
+    road = replace(read.road, tracks=tracks, name=road_label(section), start=start)
+    said = tuple(FitnessWarning(subject=f"road {road.name}", message=one) for one in read.told)
+    kept = {**draft.read, name: path.read_bytes()}
+    return replace(draft, read=kept, told=(*draft.told, *said)), road, found
 
 
 def _roughness(

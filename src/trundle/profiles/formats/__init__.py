@@ -1,0 +1,1 @@
+"""Formats of road profiles, a file each."""

@@ -44,6 +44,7 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "density": ("kg/m**3", "2450 kg/m3"),
     "pressure": ("kg/m/s**2", "30 GPa"),
     "load": ("kg/m/s**2", "3 kN/m2"),
+    "force": ("kg*m/s**2", "26 kN"),
     "stiffness": ("kg/s**2", "14700 N/cm"),
     "stiffness per metre": ("kg/m/s**2", "50 MN/m/m"),
     "rotational stiffness": ("kg*m**2/s**2", "20 MN m/rad"),

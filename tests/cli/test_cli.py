@@ -33,7 +33,7 @@ def test_criteria_and_vehicles_are_listed():
     for word in ("VC-A", "50 um/s at 8 Hz", "0.07 gal", "Ungar", "confidence", "level 9"):
         assert word in criteria
     vehicles = trundle("vehicles").stdout
-    for word in ("40.69 t", "22.91", "k [MN/m]", "c [kN s/m]", "1.97, 2.40, 2.48 Hz", "source:"):
+    for word in ("40.69", "22.91", "loads [t]", "1.97", "source:"):
         assert word in vehicles
 
 

@@ -12,6 +12,7 @@ import typer
 from trundle import __version__
 from trundle.cli import options
 from trundle.cli.models import models
+from trundle.cli.vehicles import vehicles
 from trundle.errors import ComputationError, InputError
 
 __all__ = ["app", "main"]
@@ -238,6 +239,7 @@ def new(
 
 
 app.add_typer(models)
+app.add_typer(vehicles, name="vehicles")
 
 
 @app.command()
@@ -261,14 +263,6 @@ def criteria(*, as_json: options.Json = False) -> None:
     from trundle.cli import commands
 
     commands.criteria(as_json=as_json)
-
-
-@app.command()
-def vehicles(*, as_json: options.Json = False) -> None:
-    """List the ready vehicles with axle loads, frequencies and source."""
-    from trundle.cli import commands
-
-    commands.vehicles(as_json=as_json)
 
 
 def main() -> None:

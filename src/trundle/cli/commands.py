@@ -20,11 +20,10 @@ from trundle.study.doubts import study_doubts
 from trundle.study.model import Study
 from trundle.study_file.build import load_study
 from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
-from trundle.vehicle import GRAVITY, VEHICLES, Vehicle
 
 _HIGHEST = 2e3  # Hz
 
-__all__ = ["check", "criteria", "modes", "new", "vehicles"]
+__all__ = ["check", "criteria", "modes", "new"]
 
 
 def check(path: Path, *, as_json: bool = False) -> None:
@@ -163,47 +162,6 @@ def criteria(*, as_json: bool = False) -> None:
     )
     for source, confidence in dict.fromkeys((c.source, c.confidence) for c in all_criteria()):
         print(f"source: {source}\n        confidence: {confidence}")
-
-
-def vehicles(*, as_json: bool = False) -> None:
-    """Print the ready vehicles."""
-    if as_json:
-        say_json([_described(name, build()) for name, build in VEHICLES.items()])
-        return
-    for name, build in VEHICLES.items():
-        vehicle = build()
-        print_table(
-            f"{name}: {vehicle.total_mass / 1e3:.2f} t",
-            ("contact", "behind front [m]", "static load [t]", "k [MN/m]", "c [kN s/m]"),
-            (
-                (
-                    contact,
-                    f"{vehicle.setback[i]:.2f}",
-                    f"{vehicle.static_forces[i] / GRAVITY / 1e3:.2f}",
-                    f"{vehicle.contact_stiffness[i] / 1e6:.4g}",
-                    f"{vehicle.contact_damping[i] / 1e3:.4g}",
-                )
-                for i, contact in enumerate(vehicle.contact_names)
-            ),
-        )
-        frequencies = ", ".join(f"{f:.2f}" for f in vehicle.natural_frequencies())
-        print(f"natural frequencies on rigid ground: {frequencies} Hz")
-        print(f"source: {vehicle.source}\n")
-
-
-def _described(name: str, vehicle: Vehicle) -> dict[str, Any]:
-    """Return what `vehicles` lists of one, for programs."""
-    return {
-        "name": name,
-        "mass_kg": vehicle.total_mass,
-        "contacts": list(vehicle.contact_names),
-        "setback_m": vehicle.setback.tolist(),
-        "static_loads_n": vehicle.static_forces.tolist(),
-        "contact_stiffness_n_m": vehicle.contact_stiffness.tolist(),
-        "contact_damping_n_s_m": vehicle.contact_damping.tolist(),
-        "natural_frequencies_hz": [float(f) for f in vehicle.natural_frequencies()],
-        "source": vehicle.source,
-    }
 
 
 _SHOWN: dict[str, tuple[str, float]] = {

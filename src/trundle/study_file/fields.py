@@ -16,6 +16,7 @@ __all__ = [
     "Acceleration",
     "Angle",
     "AreaDensity",
+    "AxleLoad",
     "CrossArea",
     "DampingCoefficient",
     "Density",
@@ -76,6 +77,7 @@ _LARGEST = {
     "area": 1e3,
     "second moment": 1e4,
     "pressure": 1e13,
+    "force": 1e9,
     "stiffness": 1e13,
     "damping coefficient": 1e11,
     "moment of inertia": 1e10,
@@ -204,6 +206,20 @@ def _crossing(value: Any) -> Any:
     except InputError as error:
         raise PydanticCustomError("quantity", "{rule}", {"rule": str(error)}) from None
 
+
+def _axle_load(value: Any) -> float:
+    """Read an axle's load as a mass [kg], be it written as one or as a weight."""
+    try:
+        return to_si(value, "mass")
+    except InputError as error:
+        try:
+            return to_si(value, "force") / 9.81
+        except InputError:
+            raise PydanticCustomError("quantity", "{rule}", {"rule": str(error)}) from None
+
+
+AxleLoad: TypeAlias = Annotated[float, BeforeValidator(_axle_load), _POSITIVE]
+"""What an axle carries: ``"2.65 t"``, or ``"26 kN"``."""
 
 GridPlace: TypeAlias = Annotated[Any, BeforeValidator(_crossing)]
 """A place in plan: ``[x, y]``, or the name of two grid lines that cross, ``"A/1"``."""

@@ -1,24 +1,28 @@
-"""Model linear multi-axle vehicles and build them from parts."""
+"""Model linear multi-axle vehicles and build them from parts or data sheets."""
 
 from trundle.vehicle.data_file import VehicleFile, read_vehicle
+from trundle.vehicle.description import Description, build_vehicle
 from trundle.vehicle.library import (
     RETIRED,
     VEHICLES,
     container_truck_40ft,
+    describe,
     library_vehicle,
     quarter_car,
     sprung_mass,
 )
-from trundle.vehicle.model import GRAVITY, Vehicle
-from trundle.vehicle.planar import (
+from trundle.vehicle.model import GRAVITY, Confidence, Vehicle
+from trundle.vehicle.parts import (
     Axle,
     Body,
+    Bogie,
     Hinge,
     LumpedMass,
-    build_vehicle,
+    Unit,
     damping_coefficient,
     wheel_mistake,
 )
+from trundle.vehicle.sheet import DataSheet, quarter_car_springs
 
 __all__ = [
     "GRAVITY",
@@ -26,15 +30,22 @@ __all__ = [
     "VEHICLES",
     "Axle",
     "Body",
+    "Bogie",
+    "Confidence",
+    "DataSheet",
+    "Description",
     "Hinge",
     "LumpedMass",
+    "Unit",
     "Vehicle",
     "VehicleFile",
     "build_vehicle",
     "container_truck_40ft",
     "damping_coefficient",
+    "describe",
     "library_vehicle",
     "quarter_car",
+    "quarter_car_springs",
     "read_vehicle",
     "sprung_mass",
     "wheel_mistake",

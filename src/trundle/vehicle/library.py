@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
 
 from trundle._checks import one_of
 from trundle.errors import InputError
-from trundle.vehicle.data_file import shipped_vehicles
+from trundle.vehicle.data_file import VehicleFile, shipped_files
+from trundle.vehicle.description import Description, build_vehicle
 from trundle.vehicle.model import Vehicle
-from trundle.vehicle.planar import (
-    Axle,
-    Body,
-    LumpedMass,
-    build_vehicle,
-    damping_coefficient,
-)
+from trundle.vehicle.parts import Axle, Body, LumpedMass, Unit, damping_coefficient
 
 __all__ = [
     "RETIRED",
     "VEHICLES",
     "container_truck_40ft",
+    "describe",
     "library_vehicle",
     "quarter_car",
     "sprung_mass",
@@ -64,6 +62,10 @@ def container_truck_40ft() -> Vehicle:
     >>> container_truck_40ft().natural_frequencies().round(2).tolist()
     [1.97, 2.4, 2.48]
     """
+    return _container_truck().build()
+
+
+def _container_truck() -> Description:
     wheelbase, tractor_wheelbase, box = 9.2, 3.3, 12.192
     trailer, tandem_load, drive_load, steer_load = 34_730.0, 22_910.0, 12_390.0, 5_390.0
     share = tandem_load / trailer
@@ -71,7 +73,7 @@ def container_truck_40ft() -> Vehicle:
     springs = (single, twin, 2.0 * twin)
     loads, ratios = (steer_load, drive_load, tandem_load), (0.10, 0.02, 0.02)
     setbacks = (0.0, tractor_wheelbase, tractor_wheelbase + wheelbase)
-    return build_vehicle(
+    return Description(
         name="40-ft container truck",
         bodies=(
             Body(mass=steer_load),
@@ -93,7 +95,14 @@ def container_truck_40ft() -> Vehicle:
             )
             for i in range(3)
         ),
+        # in a curve it is a tractor of two axles that pulls a semitrailer of one
+        units=(
+            Unit(lead=0.0, pivot=setbacks[1], contacts=(0, 1)),
+            Unit(lead=setbacks[1], pivot=setbacks[2], contacts=(2,)),
+        ),
         source="Pan, Mita and Li (2001), spring units corrected from kN/cm to N/cm",
+        confidence="medium",
+        assumption="wheelbases and pitch inertia are inferred from the printed frequencies",
     )
 
 
@@ -135,9 +144,48 @@ def quarter_car(
     )
 
 
+_PAPERS = "container_truck_40ft"
+_FILES: dict[str, VehicleFile] = {file.name: file for file in shipped_files()}
+_STATES: dict[str, tuple[VehicleFile, dict[str, bool]]] = {
+    name: (file, state) for file in _FILES.values() for name, state in file.states()
+}
+
+
+def describe(name: str, changes: Mapping[str, Any] | None = None) -> Description:
+    """Return the parts of a ready vehicle, to be changed before it is built.
+
+    Parameters
+    ----------
+    name : str
+        A name that ``trundle vehicles`` lists.
+    changes : mapping, optional
+        Of a vehicle that is known by a data sheet: fields of `DataSheet` in place of its own, as
+        ``{"bounce": 5.0}``.
+
+    Raises
+    ------
+    InputError
+        No such vehicle, or one without a data sheet that is to be changed.
+    """
+    if name in RETIRED:
+        raise InputError(f"vehicle {name!r} is no longer offered: {RETIRED[name]}")
+    one_of("vehicle", name, VEHICLES)
+    if name != _PAPERS:
+        file, state = _STATES[name]
+        return file.describe(**state, changes=changes or {})
+    if changes:
+        raise InputError(
+            f"vehicle {name!r} is known by its parts: {', '.join(changes)} cannot be changed"
+        )
+    return _container_truck()
+
+
+def _build(name: str) -> Vehicle:
+    return describe(name).build()
+
+
 VEHICLES: dict[str, Callable[[], Vehicle]] = {
-    "container_truck_40ft": container_truck_40ft,
-    **shipped_vehicles(),
+    name: partial(_build, name) for name in (_PAPERS, *_STATES)
 }
 """Ready vehicles by the name that a study file uses: the paper's, and one for each data file."""
 
@@ -166,6 +214,4 @@ def library_vehicle(name: str) -> Vehicle:
     >>> round(library_vehicle("tractor_3axle_semitrailer_6_axle").total_mass)
     35633
     """
-    if name in RETIRED:
-        raise InputError(f"vehicle {name!r} is no longer offered: {RETIRED[name]}")
-    return VEHICLES[one_of("vehicle", name, VEHICLES)]()
+    return describe(name).build()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
 import numpy as np
 from jaxtyping import Complex, Float
@@ -12,8 +13,12 @@ from trundle._checks import frozen_array, non_negative, set_frozen
 from trundle._typing import Array
 from trundle.dynamics import LinearSystem
 from trundle.errors import InputError, UnrestrainedModeError
+from trundle.vehicle.parts import Unit
 
-__all__ = ["GRAVITY", "Vehicle"]
+__all__ = ["GRAVITY", "Confidence", "Vehicle"]
+
+Confidence: TypeAlias = Literal["high", "medium", "low"]
+"""How far numbers can be trusted: read in their source; inferred in part; mostly assumed."""
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2]."""
@@ -53,6 +58,12 @@ class Vehicle:
         Length of road that a tyre stands on and averages over [m]; 0 where nobody says.
     wheel_radius : float
         Radius of hard wheels, which roll over a gap as a disc does [m]; 0 of soft tyres.
+    units : tuple of Unit
+        What turns as one in a curve, from the front; empty of a vehicle of one axle.
+    assumption : str
+        What of it is assumed, and not from a source.
+    confidence : str
+        How far its numbers can be trusted; empty where nobody says.
     """
 
     name: str
@@ -67,6 +78,9 @@ class Vehicle:
     source: str = ""
     contact_patch: float = 0.0
     wheel_radius: float = 0.0
+    units: tuple[Unit, ...] = ()
+    assumption: str = ""
+    confidence: str = ""
 
     def __post_init__(self) -> None:
         """Freeze arrays and check shapes and signs."""

@@ -80,6 +80,7 @@ class TrussGroup:
     "vehicle/data/toy_cart.toml": """
 title = "a cart"
 source = "made up"
+confidence = "low"
 
 [[body]]
 mass = 300.0

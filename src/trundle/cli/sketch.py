@@ -44,8 +44,8 @@ def plan_sketch(study: Study) -> str:
         letter = chr(ord("a") + i % 26)
         stations = np.linspace(0.0, drive.route.length, 400)
         _put(study.in_plan(drive.route.locate(stations)[0], drive.route.on), letter)
-        speed = 3.6 * float(drive.route.law.speed(0.0))
-        _put(study.in_plan(drive.route.points[-1:], drive.route.on), ">")
+        speed = 3.6 * drive.route.law.fastest
+        _put(study.in_plan(drive.route.line[-1:], drive.route.on), ">")
         on = "" if drive.route.on is None else f" on {drive.route.on}"
         legend.append(f"  {letter}  route {name}{on}: {speed:g} km/h, ends at >")
     for i, (name, spot) in enumerate(study.points.items()):

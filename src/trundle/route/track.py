@@ -10,6 +10,7 @@ from jaxtyping import Float
 from trundle._typing import Array
 from trundle.route.entry import Entry
 from trundle.route.path import Route
+from trundle.route.steering import Footprint, wheel_places
 
 __all__ = ["Along", "Track", "follow"]
 
@@ -57,18 +58,35 @@ class Track:
     share_slope: Float[Array, "times contacts"]
 
 
-def follow(route: Route, entry: Entry, lateral: Float[Array, " contacts"], along: Along) -> Track:
-    """Follow a route with every contact, each at its distance to the left of the line [m]."""
+def follow(
+    route: Route, entry: Entry, footprint: Footprint, along: Along, *, leaves: bool = True
+) -> Track:
+    """Follow a route with every contact.
+
+    Parameters
+    ----------
+    route : Route
+        The way.
+    entry : Entry
+        How wheels come onto the floor, and leave it.
+    footprint : Footprint
+        Where contacts are on the vehicle.
+    along : Along
+        How far they have come.
+    leaves : bool
+        Whether the way ends at the floor's edge, where wheels leave; not where it ends inside.
+    """
     station = along.station
-    place, direction = np.empty((*station.shape, 2)), np.empty((*station.shape, 2))
-    for i, aside in enumerate(lateral):
-        place[:, i], direction[:, i] = route.locate(station[:, i], aside)
-    share, share_slope = entry.share(station, route.length)
+    front = station[:, 0] + footprint.setback[0]
+    wheels = wheel_places(route, footprint, front)
+    share, share_slope = entry.share(station, route.length if leaves else np.inf)
+    # a wheel that cuts a corner comes less far than the station says: slopes are along its own way
+    stretch = np.where(wheels.stretch > 0.0, wheels.stretch, 1.0)
     return Track(
         on=route.on,
-        place=place,
-        direction=direction,
-        speed=along.speed,
+        place=wheels.place,
+        direction=wheels.direction,
+        speed=along.speed * wheels.stretch,
         share=share,
-        share_slope=share_slope,
+        share_slope=share_slope / stretch,
     )

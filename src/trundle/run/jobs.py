@@ -109,8 +109,13 @@ def plan_jobs(study: Study) -> tuple[Job, ...]:
 
 
 def _groups(study: Study) -> list[list[str]]:
-    """Return roads together whose random parts differ by a factor, and by nothing else."""
+    """Return roads together whose random parts differ by a factor, and by nothing else.
+
+    Over vehicles that are not linear no response follows from that on another road.
+    """
     groups: dict[object, list[str]] = {}
+    if not all(drive.vehicle.is_linear for drive in study.drives.values()):
+        return [[name] for name in study.roads]
     for name, road in study.roads.items():
         features = road.features if isinstance(road, FeaturedRoad) else ()
         base = road.base if isinstance(road, FeaturedRoad) else road

@@ -120,4 +120,16 @@ class Layout:
         # Work is shared out in columns or by the sparse solver; threads of small products that
         # wait for each other would only take the cores.
         with ThreadpoolController().select(internal_api="openblas").limit(limits=1):
-            return self.ground.drive(self.wheels, road, weight=weight, progress=progress)
+            driven = self.ground.drive(self.wheels, road, weight=weight, progress=progress)
+        for column in self._inner:
+            driven.forces[:, column] = 0.0  # it acts within a vehicle, and on no floor
+        return driven
+
+    @property
+    def _inner(self) -> list[int]:
+        """Numbers of the contacts that touch nothing."""
+        found, at = list[int](), 0
+        for vehicle in self.wheels.contacts.vehicles:
+            at += vehicle.n_contacts
+            found += range(at - vehicle.inner, at)
+        return found

@@ -121,7 +121,7 @@ def _ways(study: Study, building: Building) -> Iterator[FitnessWarning]:
         on = drive.route.on or next(iter(study.floor.surfaces))
         if on not in storeys:
             continue
-        line = study.in_plan(drive.route.points, drive.route.on)
+        line = study.in_plan(drive.route.line, drive.route.on)
         for part, x, y in in_the_way(building, on, line):
             yield FitnessWarning(
                 subject="route",

@@ -133,8 +133,8 @@ def _vehicle(place: str, vehicle: Vehicle) -> Typed:
 
 
 def _drive(place: str, drive: Drive) -> Typed:
-    yield f"{place}.speed", "speed", float(drive.route.law.speed(0.0))
-    steps = np.diff(drive.route.points, axis=0)
+    yield f"{place}.speed", "speed", drive.route.law.fastest
+    steps = np.diff(drive.route.line, axis=0)
     yield f"{place}.path", "route", float(np.hypot(*steps.T).sum())
     if drive.run_in:
         yield f"{place}.run_in", "run-in", drive.run_in

@@ -269,6 +269,6 @@ class Study:
         band = method.band or self.band
         if not self.band_follows_dt:
             return band
-        speed = float(drive.route.law.speed(0.0))
+        speed = drive.route.law.fastest
         limit = 0.5 / (speed * method.interaction.integration.dt)
         return replace(band, n_max=min(band.n_max, limit))

@@ -15,6 +15,8 @@ from trundle.units import DIMENSIONS, to_si
 __all__ = [
     "Acceleration",
     "Angle",
+    "AnySpeed",
+    "AnyTime",
     "AreaDensity",
     "AxleLoad",
     "CrossArea",
@@ -22,6 +24,7 @@ __all__ = [
     "Density",
     "Factor",
     "Flag",
+    "Force",
     "Frequency",
     "GridPlace",
     "GroupName",
@@ -162,6 +165,8 @@ Length: TypeAlias = Annotated[float, _quantity("length")]
 PositiveLength: TypeAlias = Annotated[float, _quantity("length"), _POSITIVE]
 NonNegativeLength: TypeAlias = Annotated[float, _quantity("length"), _NON_NEGATIVE]
 Time: TypeAlias = Annotated[float, _quantity("time"), _POSITIVE]
+AnyTime: TypeAlias = Annotated[float, _quantity("time"), _NON_NEGATIVE]
+AnySpeed: TypeAlias = Annotated[float, _quantity("speed"), _NON_NEGATIVE]
 Speed: TypeAlias = Annotated[float, _quantity("speed"), _POSITIVE]
 Frequency: TypeAlias = Annotated[float, _quantity("frequency"), _POSITIVE]
 Wavenumber: TypeAlias = Annotated[float, _quantity("wavenumber"), _POSITIVE]
@@ -170,6 +175,7 @@ Mass: TypeAlias = Annotated[float, _quantity("mass"), _NON_NEGATIVE]
 AreaDensity: TypeAlias = Annotated[float, _quantity("area density"), _NON_NEGATIVE]
 Density: TypeAlias = Annotated[float, _quantity("density"), _POSITIVE]
 Pressure: TypeAlias = Annotated[float, _quantity("pressure"), _POSITIVE]
+Force: TypeAlias = Annotated[float, _quantity("force"), _NON_NEGATIVE]
 Stiffness: TypeAlias = Annotated[float, _quantity("stiffness"), _NON_NEGATIVE]
 DampingCoefficient: TypeAlias = Annotated[float, _quantity("damping coefficient"), _NON_NEGATIVE]
 RotaryInertia: TypeAlias = Annotated[float, _quantity("moment of inertia"), _NON_NEGATIVE]

@@ -2,6 +2,7 @@
 
 from trundle.vehicle.data_file import VehicleFile, read_vehicle
 from trundle.vehicle.description import Description, build_vehicle
+from trundle.vehicle.excitation import BodyForce, OutOfRound
 from trundle.vehicle.library import (
     RETIRED,
     VEHICLES,
@@ -12,6 +13,7 @@ from trundle.vehicle.library import (
     sprung_mass,
 )
 from trundle.vehicle.model import GRAVITY, Confidence, Vehicle
+from trundle.vehicle.nonlinear import Friction, PartLaw, Stop
 from trundle.vehicle.parts import (
     Axle,
     Body,
@@ -30,12 +32,17 @@ __all__ = [
     "VEHICLES",
     "Axle",
     "Body",
+    "BodyForce",
     "Bogie",
     "Confidence",
     "DataSheet",
     "Description",
+    "Friction",
     "Hinge",
     "LumpedMass",
+    "OutOfRound",
+    "PartLaw",
+    "Stop",
     "Unit",
     "Vehicle",
     "VehicleFile",

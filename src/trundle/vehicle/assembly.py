@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float
@@ -18,6 +19,7 @@ from scipy import linalg
 
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.vehicle.excitation import BodyForce
 from trundle.vehicle.parts import Axle, Body, Bogie, Hinge, LumpedMass
 
 __all__ = ["Assembly", "Contact", "assembled"]
@@ -35,11 +37,15 @@ class Contact:
     damping: float
 
 
+_Place: TypeAlias = tuple[int, float, float]
+"""A place on a part: its number, setback and lateral."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Spring:
-    """A spring and damper between places on two parts: (part, setback, lateral)."""
+    """A spring and damper between places on two parts."""
 
-    ends: tuple[tuple[int, float, float], tuple[int, float, float]]
+    ends: tuple[_Place, _Place]
     stiffness: float
     damping: float
 
@@ -52,6 +58,7 @@ class _Parts:
     springs: list[_Spring] = field(default_factory=list[_Spring])
     bars: list[tuple[int, int, float]] = field(default_factory=list[tuple[int, int, float]])
     contacts: list[Contact] = field(default_factory=list[Contact])
+    suspended: list[tuple[_Place, _Place]] = field(default_factory=list[tuple[_Place, _Place]])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,6 +73,12 @@ class Assembly:
         Motion over each contact.
     weight : ndarray of float, shape (n_dofs,)
         Mass by coordinate: times gravity it is what pulls the vehicle down.
+    pitching : ndarray of float, shape (n_dofs,)
+        What an acceleration along the way does, by coordinate [kg m].
+    forces : ndarray of float, shape (n_forces, n_dofs)
+        Motion at each force on a body.
+    stretches : ndarray of float, shape (n_axles, n_dofs)
+        Stretch of the suspension of each axle, in its middle.
     contacts : tuple of Contact
         The contacts.
     """
@@ -75,6 +88,9 @@ class Assembly:
     stiffness: Float[Array, "dofs dofs"]
     contact_map: Float[Array, "contacts dofs"]
     weight: Float[Array, " dofs"]
+    pitching: Float[Array, " dofs"]
+    forces: Float[Array, "forces dofs"]
+    stretches: Float[Array, "axles dofs"]
     contacts: tuple[Contact, ...]
 
 
@@ -85,6 +101,7 @@ def assembled(
     bogies: Sequence[Bogie] = (),
     hinges: Sequence[Hinge] = (),
     lumped: Sequence[LumpedMass] = (),
+    forces: Sequence[BodyForce] = (),
 ) -> Assembly:
     """Put parts together.
 
@@ -92,19 +109,27 @@ def assembled(
     ----------
     bodies, axles, bogies, hinges, lumped : sequence
         The parts; contacts come axle by axle and then bogie by bogie, left before right.
+    forces : sequence of BodyForce
+        What acts on bodies.
     """
     parts = _Parts(bodies=list(bodies))
     for number, axle in enumerate(axles, start=1):
         _put_axle(parts, axle, number)
+        part = parts.contacts[-1].part
+        place = axle.setback, axle.lateral
+        # of independent wheels, the right one stands for both
+        parts.suspended.append(((axle.body, *place), (part, *place)))
     for bogie in bogies:
         _put_bogie(parts, bogie)
     rows = _Rows(parts.bodies)
     mass, weight = _masses(parts.bodies, lumped, rows)
     stiffness, damping = _springs(parts, rows)
     contact_map = np.array([rows.at(c.part, c.setback, c.lateral) for c in parts.contacts])
-    for contact, row in zip(parts.contacts, contact_map, strict=True):
-        stiffness += contact.stiffness * np.outer(row, row)
-        damping += contact.damping * np.outer(row, row)
+    # as `Vehicle.free_system` takes them off again: what is left of springs alone is then 0
+    contact_stiffness = np.array([contact.stiffness for contact in parts.contacts])
+    contact_damping = np.array([contact.damping for contact in parts.contacts])
+    stiffness += contact_map.T @ (contact_stiffness[:, None] * contact_map)
+    damping += contact_map.T @ (contact_damping[:, None] * contact_map)
     keep = _allowed_motions(hinges, rows)
     mass, damping, stiffness = (keep.T @ m @ keep for m in (mass, damping, stiffness))
     return Assembly(
@@ -113,6 +138,15 @@ def assembled(
         stiffness=stiffness,
         contact_map=contact_map @ keep,
         weight=keep.T @ weight,
+        pitching=keep.T @ _pitching(bodies, rows),
+        forces=np.array([rows.at(f.body, f.setback, f.aside) for f in forces]).reshape(
+            len(forces), rows.size
+        )
+        @ keep,
+        stretches=np.array(
+            [rows.at(*one) - rows.at(*other) for one, other in parts.suspended]
+        ).reshape(len(parts.suspended), rows.size)
+        @ keep,
         contacts=tuple(parts.contacts),
     )
 
@@ -261,6 +295,18 @@ def _masses(
         mass += part.mass * np.outer(row, row)
         weight += part.mass * row
     return mass, weight
+
+
+def _pitching(bodies: Sequence[Body], rows: _Rows) -> Array:
+    """Return the moments of bodies' inertia about the ground for an acceleration of 1 m/s2.
+
+    Pitch is positive with the rear up; speeding up presses the rear down, by m h.
+    """
+    moments = np.zeros(rows.size)
+    for i, body in enumerate(bodies):
+        if body.pitch_inertia > 0.0:
+            moments[rows.first[i] + 1] = -body.mass * body.height
+    return moments
 
 
 def _springs(parts: _Parts, rows: _Rows) -> tuple[Array, Array]:

@@ -13,7 +13,9 @@ from trundle._typing import Array
 from trundle.dynamics import LinearSystem
 from trundle.errors import InputError
 from trundle.vehicle.assembly import Assembly, assembled
+from trundle.vehicle.excitation import BodyForce, OutOfRound
 from trundle.vehicle.model import GRAVITY, Vehicle
+from trundle.vehicle.nonlinear import PartLaw
 from trundle.vehicle.parts import Axle, Body, Bogie, Hinge, LumpedMass, Unit
 
 __all__ = ["Description", "build_vehicle"]
@@ -37,6 +39,14 @@ class Description:
         What turns as one in a curve, from the front; found from hinges unless given.
     contact_patch, wheel_radius : float
         How its tyres meet the road [m], see `Vehicle`.
+    rounds : tuple of OutOfRound
+        What is not round of its wheels; nothing unless given.
+    forces : tuple of BodyForce
+        What shakes its bodies; nothing unless given.
+    laws : tuple of Friction or Stop
+        What is not linear of its suspensions; nothing unless given.
+    lifts_off : bool
+        Whether wheels leave the ground where they would pull on it.
     assumption : str
         What of it is assumed, and not from a source.
     confidence : str
@@ -52,6 +62,10 @@ class Description:
     units: tuple[Unit, ...] = ()
     contact_patch: float = 0.0
     wheel_radius: float = 0.0
+    rounds: tuple[OutOfRound, ...] = ()
+    forces: tuple[BodyForce, ...] = ()
+    laws: tuple[PartLaw, ...] = ()
+    lifts_off: bool = False
     source: str = ""
     assumption: str = ""
     confidence: str = ""
@@ -118,8 +132,9 @@ class Description:
         """
         _check_parts(self)
         made = assembled(
-            self.bodies, self.axles, bogies=self.bogies, hinges=self.hinges, lumped=self.lumped
-        )
+            self.bodies, self.axles, bogies=self.bogies, hinges=self.hinges, lumped=self.lumped,
+            forces=self.forces,
+        )  # fmt: skip
         sag = _settle(self.name, made.stiffness, GRAVITY * made.weight)
         stiffness = np.array([c.stiffness for c in made.contacts])
         setback = np.array([c.setback for c in made.contacts])
@@ -138,6 +153,13 @@ class Description:
             contact_patch=self.contact_patch,
             wheel_radius=self.wheel_radius,
             units=self.units or _units(self, made, front),
+            rounds=self.rounds,
+            forces=self.forces,
+            force_map=made.forces,
+            pitching=made.pitching,
+            laws=self.laws,
+            law_map=made.stretches[[law.axle for law in self.laws]],
+            lifts_off=self.lifts_off,
             assumption=self.assumption,
             confidence=self.confidence,
         )
@@ -183,12 +205,26 @@ def build_vehicle(
     ).build()  # fmt: skip
 
 
+def _check_laws(one: Description) -> None:
+    """Refuse friction and stops of axles that have no suspension to work in."""
+    for law in one.laws:
+        if law.axle >= len(one.axles):
+            raise InputError(f"axle numbers must be 1 to {len(one.axles)}; got {law.axle + 1}")
+        axle = one.axles[law.axle]
+        if axle.axle_mass == 0.0 or (axle.independent and axle.track_width > 0.0):
+            raise InputError(
+                f"{type(law).__name__.lower()} of axle {law.axle + 1} works between a body and a "
+                "rigid axle with an axle_mass: give that too"
+            )
+
+
 def _check_parts(one: Description) -> None:
+    _check_laws(one)
     if not one.bodies or not (one.axles or one.bogies):
         raise InputError("a vehicle needs at least one body and one axle")
     if any(hinge.bodies[0] == hinge.bodies[1] for hinge in one.hinges):
         raise InputError("a hinge must join two different bodies")
-    named = [part.body for part in (*one.axles, *one.bogies, *one.lumped)]
+    named = [part.body for part in (*one.axles, *one.bogies, *one.lumped, *one.forces)]
     named += [b for h in one.hinges for b in h.bodies]
     last = len(one.bodies) - 1
     if any(not 0 <= number <= last for number in named):

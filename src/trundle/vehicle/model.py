@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -13,6 +13,8 @@ from trundle._checks import frozen_array, non_negative, set_frozen
 from trundle._typing import Array
 from trundle.dynamics import LinearSystem
 from trundle.errors import InputError, UnrestrainedModeError
+from trundle.vehicle.excitation import BodyForce, OutOfRound
+from trundle.vehicle.nonlinear import PartLaw
 from trundle.vehicle.parts import Unit
 
 __all__ = ["GRAVITY", "Confidence", "Vehicle"]
@@ -60,6 +62,22 @@ class Vehicle:
         Radius of hard wheels, which roll over a gap as a disc does [m]; 0 of soft tyres.
     units : tuple of Unit
         What turns as one in a curve, from the front; empty of a vehicle of one axle.
+    rounds : tuple of OutOfRound
+        What is not round of its wheels.
+    forces : tuple of BodyForce
+        What shakes its bodies.
+    force_map : ndarray of float, shape (n_forces, n_dofs)
+        Motion where each of these acts.
+    pitching : ndarray of float, shape (n_dofs,)
+        What an acceleration along the way of 1 m/s2 presses on it [kg m]; nothing unless given.
+    laws : tuple of Friction or Stop
+        What is not linear of its suspensions.
+    law_map : ndarray of float, shape (n_laws, n_dofs)
+        Stretch of the suspension where each works.
+    lifts_off : bool
+        Whether wheels leave the ground where they would pull on it.
+    inner : int
+        How many of the last contacts touch nothing: what acts within a vehicle is put in there.
     assumption : str
         What of it is assumed, and not from a source.
     confidence : str
@@ -79,6 +97,14 @@ class Vehicle:
     contact_patch: float = 0.0
     wheel_radius: float = 0.0
     units: tuple[Unit, ...] = ()
+    rounds: tuple[OutOfRound, ...] = ()
+    forces: tuple[BodyForce, ...] = ()
+    force_map: Float[Array, "forces dofs"] | None = None
+    pitching: Float[Array, " dofs"] | None = None
+    laws: tuple[PartLaw, ...] = ()
+    law_map: Float[Array, "laws dofs"] | None = None
+    lifts_off: bool = False
+    inner: int = 0
     assumption: str = ""
     confidence: str = ""
 
@@ -101,9 +127,60 @@ class Vehicle:
         for name in ("contact_stiffness", "contact_damping"):
             if np.any(vectors[name] < 0.0):
                 raise InputError(f"{name} must be 0 or more; got {vectors[name].tolist()}")
+        if self.force_map is not None:
+            shape = (len(self.forces), self.system.n_dofs)
+            set_frozen(self, force_map=frozen_array("force_map", self.force_map, shape=shape))
+        if self.pitching is not None:
+            shape = (self.system.n_dofs,)
+            set_frozen(self, pitching=frozen_array("pitching", self.pitching, shape=shape))
         for name in ("contact_patch", "wheel_radius"):
             set_frozen(self, **{name: non_negative(name, getattr(self, name))})
         set_frozen(self, contact_map=contact_map, **vectors)
+
+    def with_inner_contacts(self, *, braked: bool) -> Vehicle:
+        """Return it with a contact of no stiffness for all that acts within it.
+
+        What is put in there is a force on the vehicle, and none on the ground.
+
+        Parameters
+        ----------
+        braked : bool
+            Whether it speeds up or brakes on its way: its bodies then pitch.
+        """
+        rows = [] if self.law_map is None else list(self.law_map)
+        rows += [] if self.force_map is None else list(self.force_map)
+        names = [f"{type(law).__name__.lower()} axle {law.axle + 1}" for law in self.laws]
+        names += [force.name for force in self.forces]
+        if braked and self.pitching is not None and np.any(self.pitching != 0.0):
+            rows, names = [*rows, self.pitching], [*names, "braking"]
+        if not rows:
+            return self
+        none = np.zeros(len(rows))
+        return replace(
+            self,
+            contact_map=np.vstack([self.contact_map, rows]),
+            contact_stiffness=np.concatenate([self.contact_stiffness, none]),
+            contact_damping=np.concatenate([self.contact_damping, none]),
+            static_forces=np.concatenate([self.static_forces, none]),
+            setback=np.concatenate([self.setback, none]),
+            lateral=np.concatenate([self.lateral, none + self.lateral[0]]),
+            contact_names=(*self.contact_names, *names),
+            inner=len(rows),
+        )
+
+    def backwards(self) -> Vehicle:
+        """Return it driving backwards, its last axle first; left is then on its other side."""
+        return replace(
+            self,
+            setback=self.setback.max() - self.setback,
+            lateral=-self.lateral,
+            units=(),
+        )
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether it grows with the road: without friction, stops, and lifting off."""
+        return not self.laws and not self.lifts_off
 
     @property
     def n_contacts(self) -> int:

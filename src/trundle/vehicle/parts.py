@@ -45,6 +45,8 @@ class Body:
         body that does not roll.
     aside : float
         Distance of its centre of mass to the left of the centre line [m].
+    height : float
+        Of its centre of mass above the ground [m]: by it braking makes it pitch; 0 does not.
     """
 
     mass: float
@@ -52,6 +54,7 @@ class Body:
     centre: float = 0.0
     roll_inertia: float = 0.0
     aside: float = 0.0
+    height: float = 0.0
 
     def __post_init__(self) -> None:
         """Check mass and inertia."""
@@ -62,6 +65,7 @@ class Body:
             centre=finite("centre", self.centre),
             roll_inertia=non_negative("roll_inertia", self.roll_inertia),
             aside=finite("aside", self.aside),
+            height=non_negative("height", self.height),
         )
 
 

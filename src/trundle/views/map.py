@@ -181,7 +181,7 @@ def _lines(result: StudyResult) -> dict[str, Array]:
     """Return routes in plan [m]."""
     study = result.study
     return {
-        name: study.in_plan(drive.route.points, drive.route.on)
+        name: study.in_plan(drive.route.line, drive.route.on)
         for name, drive in study.drives.items()
     }
 

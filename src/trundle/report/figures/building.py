@@ -72,8 +72,8 @@ def storey_figure(study: Study, building: Building, name: str) -> Figure:
     _draw_grid(axes, building, low, high)
     for i, (route, drive) in enumerate(study.drives.items()):
         if drive.route.on in (name, None):
-            line = study.in_plan(drive.route.points, drive.route.on)
-            draw_route(axes, line, f"{route}, {in_kmh(float(drive.route.law.speed(0.0)))}", i)
+            line = study.in_plan(drive.route.line, drive.route.on)
+            draw_route(axes, line, f"{route}, {in_kmh(drive.route.law.fastest)}", i)
     for point, spot in study.points.items():
         if spot.on in (name, None):
             place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]

@@ -87,14 +87,14 @@ def plan_figure(study: Study, plan: FloorPlan) -> Figure:
     _draw_beams(axes, plan)
     for i, (name, route) in enumerate((n, d.route) for n, d in study.drives.items()):
         colour = COLOURS[i % 6]
-        axes.plot(*route.points.T, color=colour, linewidth=2.0)
+        axes.plot(*route.line.T, color=colour, linewidth=2.0)
         axes.annotate(
             "",
-            route.points[-1],
-            xytext=route.points[-2],
+            route.line[-1],
+            xytext=route.line[-2],
             arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 2.0},
         )
-        speed = in_kmh(float(route.law.speed(0.0)))
+        speed = in_kmh(route.law.fastest)
         middle, direction = route.locate(np.array([0.72 * route.length]))
         angle = np.degrees(np.arctan2(direction[0, 1], direction[0, 0]))
         axes.annotate(

@@ -210,7 +210,7 @@ def _image(panel: Axes, study: Study, view: MapView, values: Array, **look: obje
         route = study.drives[name].route
         if route.on != view.grid.on:
             continue
-        line = study.in_plan(route.points, route.on).T
+        line = study.in_plan(route.line, route.on).T
         panel.plot(*line, color="white", linewidth=2.4)
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
     for spot in study.points.values():

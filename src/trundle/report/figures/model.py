@@ -67,8 +67,8 @@ def plan_figure(study: Study, name: str) -> Figure:
     _draw_members(axes, study, surface)
     for i, (route, drive) in enumerate(study.drives.items()):
         if drive.route.on in {name, None}:
-            line = study.in_plan(drive.route.points, drive.route.on)
-            draw_route(axes, line, f"{route}, {in_kmh(float(drive.route.law.speed(0.0)))}", i)
+            line = study.in_plan(drive.route.line, drive.route.on)
+            draw_route(axes, line, f"{route}, {in_kmh(drive.route.law.fastest)}", i)
     for point, spot in study.points.items():
         if spot.on in {name, None}:
             place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]

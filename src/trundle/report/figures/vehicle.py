@@ -39,7 +39,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
     vehicles: dict[str, Vehicle] = {}
     for drive in study.drives.values():
         vehicles.setdefault(drive.vehicle.name, drive.vehicle)
-        speeds.setdefault(drive.vehicle.name, set()).add(float(drive.route.law.speed(0.0)))
+        speeds.setdefault(drive.vehicle.name, set()).add(drive.route.law.fastest)
     for number, (name, vehicle) in enumerate(vehicles.items()):
         end = f"_{number + 1}" if number else ""
         at = sorted({*speeds[name], *study.force_speeds})

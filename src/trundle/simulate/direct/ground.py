@@ -12,6 +12,7 @@ from trundle._typing import Array
 from trundle.dynamics import NewmarkParameters, NewmarkPropagator
 from trundle.errors import InputError
 from trundle.simulate.direct.floors import FullFloor, RigidGround
+from trundle.simulate.direct.laws import laws_of
 from trundle.simulate.direct.march import ContactLaw, drive, load_floor, run_in, static_start
 from trundle.simulate.wheels.contacts import Contacts, Wheels
 from trundle.simulate.wheels.driven import Driven
@@ -107,7 +108,9 @@ class FullGround:
 
 def _law(contacts: Contacts, integration: NewmarkParameters) -> ContactLaw:
     return ContactLaw(
-        springs=contacts.springs, vehicle=NewmarkPropagator(contacts.free, integration)
+        springs=contacts.springs,
+        vehicle=NewmarkPropagator(contacts.free, integration),
+        laws=laws_of(contacts.vehicles),
     )
 
 

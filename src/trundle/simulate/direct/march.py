@@ -12,6 +12,7 @@ from trundle._typing import Array
 from trundle.dynamics import Motion, Propagator, State
 from trundle.errors import UnstableStepError
 from trundle.simulate.direct.floors import ContactFloor, RigidGround
+from trundle.simulate.direct.laws import Laws, Linear
 from trundle.simulate.wheels.contacts import Springs
 from trundle.simulate.wheels.driven import Driven
 from trundle.simulate.wheels.roads import RoadUnderWheels
@@ -28,10 +29,14 @@ __all__ = [
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactLaw:
-    """Hold a vehicle's contacts, and the vehicle beside them prepared for the time step."""
+    """Hold a vehicle's contacts, and the vehicle beside them prepared for the time step.
+
+    `laws` say what of them is not linear; None where all is.
+    """
 
     springs: Springs
     vehicle: Propagator
+    laws: Laws | None = None
 
 
 def run_in(law: ContactLaw, timeline: Timeline, road: RoadUnderWheels) -> tuple[State, Array]:
@@ -131,7 +136,20 @@ def _step(
     stiff = k * (e @ lift.displacement + sink) + c * (e @ lift.velocity + sink_rate)
     gap = e @ free.displacement - height + sink @ springs.static
     gap_rate = e @ free.velocity - rate + sink_rate @ springs.static
-    dynamic = np.linalg.solve(np.eye(len(k)) + stiff, road.push[at] - k * gap - c * gap_rate)
+    known = road.push[at] - k * gap - c * gap_rate
+    if law.laws is None:
+        dynamic = np.linalg.solve(np.eye(len(k)) + stiff, known)
+    else:
+        dynamic = law.laws.solve(
+            Linear(
+                known=known,
+                stiff=stiff,
+                static=springs.static,
+                stretch=e @ free.displacement,
+                by_forces=e @ lift.displacement,
+                before=np.array([e @ vehicle_state.displacement, before - springs.static]),
+            )
+        )
     forces = springs.static + dynamic
     load = e.T @ dynamic
     change = law.vehicle.respond(load)

@@ -102,8 +102,13 @@ class Modal:
         """Carry any damping."""
 
     def check_vehicle(self, vehicle: Vehicle, *, level: bool) -> None:
-        """Refuse a vehicle that vibrates faster than the step shows; any start is known."""
+        """Refuse a vehicle that vibrates faster than the step shows, or is not linear."""
         del level
+        if not vehicle.is_linear:
+            raise InputError(
+                f"vehicle {vehicle.name!r} is not linear (friction, stops, or lifting off): it is "
+                'stepped run by run with Newmark\'s method alone, integration = "newmark"'
+            )
         if problem := step_problem(vehicle, self.dt):
             raise InputError(problem)
 

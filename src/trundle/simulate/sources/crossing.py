@@ -13,7 +13,7 @@ from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.road import FeaturedRoad, Road, RoughnessBand, Tread
-from trundle.route import Along, DriveIn, Entry, Route
+from trundle.route import Along, DriveIn, Entry, Footprint, Route
 from trundle.vehicle import Vehicle
 
 __all__ = ["TAIL", "Crossing"]
@@ -90,12 +90,65 @@ class Crossing:
         if self.band.contact_patch == 0.0 and self.vehicle.contact_patch > 0.0:
             patch = self.vehicle.contact_patch
             set_frozen(self, band=replace(self.band, contact_patch=patch))
+        if self.route.reverse:
+            set_frozen(self, vehicle=self.vehicle.backwards())
+        braked = bool(np.any(self.route.law.change(self._clock()) != 0.0))
+        set_frozen(self, vehicle=self.vehicle.with_inner_contacts(braked=braked))
+        self._check_corners()
+        self._check_rest()
         set_frozen(self, road=self.road.of(self.route.name))
         if self.chainage == 0.0:
             set_frozen(self, chainage=self.road.start)
         self._check_contact()
         if self.run_in is not None:
             set_frozen(self, run_in=non_negative("run_in", self.run_in))
+
+    def _clock(self) -> Float[Array, " times"]:
+        """Return times all along the drive [s], close enough to see where it brakes."""
+        law = self.route.law
+        ends = (t for t in (law.time_to(self._way), law.rests_from) if np.isfinite(t))
+        return np.linspace(0.0, max(0.0, *ends, 0.0), 501)
+
+    def _check_rest(self) -> None:
+        """Refuse a vehicle that comes to rest half off the floor."""
+        law = self.route.law
+        if not self.stays or not np.isfinite(law.rests_from):
+            return
+        front = self.lead + float(law.distance(law.rests_from))
+        if front > self.route.length + 1e-6:
+            raise InputError(
+                f"route {self.route.name!r}: the vehicle comes to rest with its front axle "
+                f"{front - self.route.length:.4g} m behind the route's end: let it stop before, or "
+                "drive off"
+            )
+
+    def _check_corners(self) -> None:
+        """Refuse wheels beside a line that turns sharply: they would jump."""
+        if not self.route.has_sharp_corners:
+            return
+        aside = float(np.abs(self.vehicle.lateral + self.route.lane).max())
+        if aside > 0.0:
+            raise InputError(
+                f"route {self.route.name!r} turns sharply, where a wheel {aside:g} m beside its "
+                "line would jump: give the radius that its corners are driven with"
+            )
+
+    @property
+    def footprint(self) -> Footprint:
+        """Where its wheels are on the vehicle."""
+        vehicle = self.vehicle
+        units = vehicle.units if self.route.steering == "tractrix" else ()
+        return Footprint(setback=vehicle.setback, lateral=vehicle.lateral, units=units)
+
+    @property
+    def stays(self) -> bool:
+        """Whether it comes to rest on the route, and never leaves."""
+        return not np.isfinite(self.route.law.time_to(self._way))
+
+    @property
+    def _way(self) -> float:
+        """What the front axle drives until the last wheel has left [m]."""
+        return self.route.length - self.lead + self.vehicle.length
 
     def _check_contact(self) -> None:
         """Refuse a point that meets joints and steps: it would be thrown up in no time."""
@@ -123,6 +176,8 @@ class Crossing:
     def run_in_time(self) -> float:
         """Time driven on rigid ground before time 0 [s]."""
         speed = float(self.route.law.speed(0.0))
+        if speed == 0.0:
+            return 0.0  # a standing start
         if self.run_in is not None:
             return self.run_in / speed
         rates = self.vehicle.decay_rates()
@@ -130,9 +185,9 @@ class Crossing:
 
     @property
     def exit_time(self) -> float:
-        """Time at which the last wheel has left the floor [s]."""
-        way = self.route.length - self.lead + self.vehicle.length
-        return self.depart + self.route.law.time_to(way)
+        """Time at which the last wheel has left the floor, or it has come to rest there [s]."""
+        law = self.route.law
+        return self.depart + (law.rests_from if self.stays else law.time_to(self._way))
 
     def begins(self, dt: float) -> float:
         """Return when the vehicle begins to move, a whole number of steps [s]."""

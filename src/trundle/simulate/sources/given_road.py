@@ -92,7 +92,7 @@ def _track_doubts(
 def _tracks(crossing: Crossing) -> list[tuple[Profile, list[int]]]:
     """Return the profiles under a vehicle's wheels, each with the contacts that roll on it."""
     found: list[tuple[Profile, list[int]]] = []
-    for contact, aside in enumerate(crossing.vehicle.lateral):
+    for contact, aside in enumerate(crossing.vehicle.lateral[: _outer(crossing.vehicle)]):
         profile = crossing.road.under(float(aside), crossing.tread(contact))
         if profile is None:
             profile = Profile.smooth()
@@ -102,6 +102,11 @@ def _tracks(crossing: Crossing) -> list[tuple[Profile, list[int]]]:
         else:
             same.append(contact)
     return found
+
+
+def _outer(vehicle: Vehicle) -> int:
+    """Return how many of a vehicle's contacts touch the ground: the first ones."""
+    return vehicle.n_contacts - vehicle.inner
 
 
 def _only(along: Along, contacts: list[int]) -> Along:
@@ -124,7 +129,7 @@ def given_road(crossing: Crossing, along: Along) -> GivenRoad:
         A profile that does not cover the way that the wheels need, or that rises and falls
         within a step.
     """
-    elevation, slope = np.empty(along.station.shape), np.empty(along.station.shape)
+    elevation, slope = np.zeros(along.station.shape), np.zeros(along.station.shape)
     came = _Came.of(along.station.shape[1])
     for profile, contacts in _tracks(crossing):
         lying = _lay(crossing, profile, _only(along, contacts))
@@ -135,7 +140,8 @@ def given_road(crossing: Crossing, along: Along) -> GivenRoad:
     if crossing.start == "level":
         return GivenRoad(elevation=elevation, slope=slope)
     level = came.here[0]
-    grade = float(came.grade.mean()) if _follows_planes(crossing.vehicle) else 0.0
+    climbs = _follows_planes(crossing.vehicle)
+    grade = float(came.grade[: _outer(crossing.vehicle)].mean()) if climbs else 0.0
     way = along.station - along.station[0, 0]
     return GivenRoad(elevation=elevation - level - grade * way, slope=slope - grade)
 
@@ -292,11 +298,12 @@ def _put(came: _Came, contacts: list[int], vehicle: Vehicle, lying: _Lying) -> N
 
 def _follows_planes(vehicle: Vehicle) -> bool:
     """Tell whether all contacts can lie on an inclined plane without a force in any spring."""
-    e, stiffness = vehicle.contact_map, np.asarray(vehicle.free_system.stiffness)
+    outer = _outer(vehicle)
+    e, stiffness = vehicle.contact_map[:outer], np.asarray(vehicle.free_system.stiffness)
     scale = float(np.abs(stiffness).max())
-    if scale == 0.0:
-        return bool(np.linalg.matrix_rank(e) >= vehicle.n_contacts)
-    wanted = np.concatenate([-vehicle.setback, np.zeros(len(stiffness))])
+    if scale <= _PLANE**2 * float(np.abs(np.asarray(vehicle.system.stiffness)).max()):
+        return bool(np.linalg.matrix_rank(e) >= outer)
+    wanted = np.concatenate([-vehicle.setback[:outer], np.zeros(len(stiffness))])
     matrix = np.vstack([e, stiffness / scale])
     motion = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
     return bool(np.abs(matrix @ motion - wanted).max() < _PLANE)

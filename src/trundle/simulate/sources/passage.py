@@ -13,13 +13,14 @@ from trundle._words import in_kmh
 from trundle.dynamics import Modes
 from trundle.errors import FitnessWarning
 from trundle.road import FITTED_RANGE
-from trundle.route import Along, Track, follow
+from trundle.route import Along, Track, follow, wheel_places
 from trundle.simulate.sources.axle_hop import axle_hop_warnings
 from trundle.simulate.sources.crossing import Crossing
 from trundle.simulate.sources.given_road import GivenRoad, given_road, given_road_doubts
 from trundle.simulate.sources.random_road import RandomRoad
 from trundle.simulate.sources.source import Source, WaveSet
 from trundle.simulate.sources.waves import waves_under
+from trundle.simulate.sources.within import forces_within, lifts_of_wheels
 from trundle.structure import ContactShape, Structure
 from trundle.vehicle import Vehicle
 
@@ -97,11 +98,26 @@ class Passage:
         """Return where its wheels are."""
         crossing = self.crossing
         along = crossing.along(time, begins)
-        return follow(crossing.route, crossing.entry, crossing.vehicle.lateral, along)
+        track = follow(
+            crossing.route, crossing.entry, crossing.footprint, along, leaves=not crossing.stays
+        )
+        if crossing.vehicle.inner:  # what acts within a vehicle touches no floor
+            track.share[:, -crossing.vehicle.inner :] = 0.0
+            track.share_slope[:, -crossing.vehicle.inner :] = 0.0
+        return track
 
     def way(self) -> Iterator[tuple[Float[Array, "places 2"], Float[Array, "places 2"]]]:
         """Give places all along each track of its wheels."""
-        route = self.crossing.route
+        route, footprint = self.crossing.route, self.crossing.footprint
+        if footprint.units:
+            way = route.length + self.crossing.vehicle.length
+            front = np.linspace(0.0, way, _PLACES_A_METRE * int(way) + 2)
+            found = wheel_places(route, footprint, front)
+            station = front[:, None] - footprint.setback
+            for i in range(len(footprint.setback)):
+                on = (station[:, i] >= 0.0) & (station[:, i] <= route.length)
+                yield found.place[on, i], found.direction[on, i]
+            return
         station = np.linspace(0.0, route.length, _PLACES_A_METRE * int(route.length) + 2)
         for lateral in np.unique(self.crossing.vehicle.lateral):
             yield route.locate(station, lateral)
@@ -113,7 +129,11 @@ class Passage:
         spectrum = crossing.road.spectrum
         given = given_road(crossing, along) if crossing.road.is_given else None
         random = None if spectrum is None else RandomRoad(crossing, spectrum, along, seed)
-        return RoadInputs(crossing, along, _Parts(given, random, along.station.shape))
+        return RoadInputs(
+            crossing,
+            along,
+            _Parts(given, random, along.station.shape, lifts_of_wheels(crossing, along)),
+        )
 
     def waves(
         self, time: Float[Array, " times"], begins: float, n_waves: int
@@ -150,6 +170,7 @@ class Passage:
     ) -> tuple[FitnessWarning, ...]:
         """Return what a result must say of vehicle, road, and mesh under the wheels."""
         found = [*axle_hop_warnings((self.crossing,)), *_extrapolation(self.crossing)]
+        found += _not_linear(self.crossing)
         if contact.kinks:
             found.append(_mesh_passing(self.crossing, structure, modes))
         return tuple(found)
@@ -159,12 +180,16 @@ class _Parts:
     """A road under the wheels: its given part, the same in every run, and its random part."""
 
     def __init__(
-        self, given: GivenRoad | None, random: RandomRoad | None, shape: tuple[int, ...]
+        self,
+        given: GivenRoad | None,
+        random: RandomRoad | None,
+        shape: tuple[int, ...],
+        lifts: Float[Array, "2 times contacts"] | None,
     ) -> None:
         self._random = random
-        self._given = np.zeros((2, *shape))
+        self._given = np.zeros((2, *shape)) if lifts is None else lifts
         if given is not None:
-            self._given[0], self._given[1] = given.elevation, given.slope
+            self._given = self._given + np.array([given.elevation, given.slope])
 
     def draw(self, run: int) -> Float[Array, "2 times contacts"]:
         """Return elevation [m] and slope under the wheels."""
@@ -182,6 +207,7 @@ class RoadInputs:
         self._road, self._level = road, crossing.start == "level"
         self._stiffness = crossing.vehicle.contact_stiffness
         self._rolling = crossing.vehicle.contact_damping * along.speed
+        self._within = forces_within(crossing, along)
 
     def draw(self, run: int) -> tuple[Float[Array, "times contacts"], Float[Array, " contacts"]]:
         """Return the pushes of a run [N], and the height under each wheel at first [m]."""
@@ -194,13 +220,28 @@ class RoadInputs:
     def _pushed(self, read: Callable[[], Array]) -> tuple[Array, Array]:
         elevation, slope = read()
         push = self._stiffness * elevation + self._rolling * slope
+        if self._within.shape[1]:
+            push[:, -self._within.shape[1] :] += self._within
         return push, np.zeros_like(elevation[0]) if self._level else elevation[0]
+
+
+def _not_linear(crossing: Crossing) -> list[FitnessWarning]:
+    vehicle = crossing.vehicle
+    if vehicle.is_linear:
+        return []
+    what = ["lifts off"] * vehicle.lifts_off
+    what += sorted({type(law).__name__.lower() for law in vehicle.laws})
+    message = (
+        f"it is not linear ({', '.join(what)}): every run is stepped by itself, levels do not grow "
+        "with the road, and there are no exact statistics of it"
+    )
+    return [FitnessWarning(subject=f"vehicle, {vehicle.name}", message=message)]
 
 
 def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
     if crossing.road.spectrum is None:
         return []
-    speed = float(crossing.route.law.speed(0.0))
+    speed = crossing.route.law.fastest
     n_max = crossing.band.n_max
     if n_max > FITTED_RANGE[1] * (1 + 1e-9):
         message = (
@@ -219,7 +260,7 @@ def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
 
 def _mesh_passing(crossing: Crossing, structure: Structure, modes: Modes | None) -> FitnessWarning:
     size = structure.surface(crossing.route.on).element_size
-    speed = float(crossing.route.law.speed(0.0))
+    speed = crossing.route.law.fastest
     passing = speed / size * np.arange(1, _HARMONICS + 1)
     note = f"hat functions of {size:.3g} m are passed at {speed / size:.3g} Hz and its multiples"
     if modes is not None:

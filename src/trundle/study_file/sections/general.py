@@ -66,7 +66,7 @@ def _sizes(
             rule="what is kept of every run would not fit in memory",
             remedy=f"use at most {int(_MAX_HISTORY / kept)} runs, or fewer points",
         )
-    ways = (d.route.law.time_to(d.route.length + 2.0 * d.vehicle.length) for d in drives.values())
+    ways = (_time_needed(drive) for drive in drives.values())
     duration = file.general.duration or max(ways, default=0.0) + 5.0
     before = max(map(_run_in_time, drives.values()), default=0.0)
     for method in methods.values():
@@ -88,6 +88,12 @@ def _sizes(
                 f"{LEAST_BATCH} runs at a time",
                 remedy="use fewer points, a shorter record, or a longer dt",
             )
+
+
+def _time_needed(drive: Drive) -> float:
+    """Return how long a vehicle is on its way: until it has left, or stands for ever [s]."""
+    law, way = drive.route.law, drive.route.length + 2.0 * drive.vehicle.length
+    return min(law.time_to(way), law.rests_from)
 
 
 def _run_in_time(drive: Drive) -> float:

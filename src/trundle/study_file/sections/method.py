@@ -299,6 +299,14 @@ def _vehicle_steps(
     for method in methods.values():
         integration = method.interaction.integration
         for vehicle in vehicles.values() if integration.f_max is not None else ():
+            if not vehicle.is_linear:
+                yield Problem(
+                    place=f"method {method.name!r}.integration",
+                    value="modal",
+                    rule=f"vehicle {vehicle.name!r} is not linear (friction, stops, or lifting "
+                    "off), and modal steps are of linear vehicles",
+                    remedy='integration = "newmark" steps it run by run; or leave these parts out',
+                )
             if problem := step_problem(vehicle, integration.dt):
                 yield Problem(
                     place=f"method {method.name!r}.dt",

@@ -210,7 +210,7 @@ def _roughness(
     follows_dt: bool,
 ) -> Iterator[Problem]:
     for name, drive in drives.items():
-        speed = float(drive.route.law.speed(0.0))
+        speed = drive.route.law.fastest
         for method in methods.values():
             dt = method.interaction.integration.dt
             limit = 0.5 / (speed * dt)

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any, Self, TypeAlias
 
 import numpy as np
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from trundle.errors import Problem
-from trundle.route import ConstantSpeed, Route
-from trundle.structure import (
-    FloorPlan,
-)
+from trundle.road import RoadClass
+from trundle.route import ConstantSpeed, Route, SpeedLaw, SpeedOverTime, Steering, wheel_places
+from trundle.simulate import Crossing
+from trundle.structure import FloorPlan, Surface
 from trundle.study.model import Extent
 from trundle.study.plans import Case, Drive, MethodPlan
 from trundle.study_file.attempt import attempted
@@ -31,7 +31,11 @@ from trundle.study_file.draft import (
     unknown,
 )
 from trundle.study_file.fields import (
+    AnySpeed,
+    AnyTime,
+    Flag,
     GroupName,
+    Length,
     Line,
     Name,
     NonNegativeLength,
@@ -48,6 +52,12 @@ _NOWHERE = ((0.0, 0.0), (1.0, 0.0))  # of a route that is drawn, until its drawi
 _LOOKED_AT = 0.1  # m along a route
 
 
+_OverStations: TypeAlias = Annotated[
+    tuple[tuple[NonNegativeLength, AnySpeed], ...], Field(min_length=2)
+]
+_OverTime: TypeAlias = Annotated[tuple[tuple[AnyTime, AnySpeed], ...], Field(min_length=2)]
+
+
 class RouteSection(Section):
     """Where a vehicle drives, and how fast."""
 
@@ -56,15 +66,43 @@ class RouteSection(Section):
     path: Annotated[tuple[Place, ...], Field(min_length=2)] = _NOWHERE
     drawn: Line | None = None
     on: Name | None = None
-    speed: Speed
+    speed: Speed | None = None
+    speeds: _OverStations | None = None
+    speeds_over_time: _OverTime | None = None
+    waits: tuple[AnyTime, ...] = ()
     run_in: NonNegativeLength | None = None
+    radius: NonNegativeLength = 0.0
+    lane: Length = 0.0
+    steering: Steering | None = None
+    reverse: Flag = False
 
     @model_validator(mode="after")
     def _check_path(self) -> Self:
+        rule = ""
+        given = [k for k in ("speed", "speeds", "speeds_over_time") if getattr(self, k) is not None]
         if ("path" in self.model_fields_set) == (self.drawn is not None):
             rule = "a route has a path, or is drawn on a layer of the building's drawing"
+        elif len(given) != 1:
+            rule = "a route has one of speed, speeds (over stations) and speeds_over_time; got "
+            rule += " and ".join(given) or "none"
+        elif self.waits and self.speeds is None:
+            rule = "waits are of stops among speeds over stations: leave them out"
+        elif self.reverse and self.steering == "tractrix":
+            rule = "a vehicle that is pushed backwards is not pulled: leave steering out"
+        if rule:
             raise PydanticCustomError("rule", "{rule}", {"rule": rule})
         return self
+
+    @property
+    def law(self) -> SpeedLaw:
+        """How fast it goes."""
+        if self.speeds is not None:
+            station, value = np.array(self.speeds).T
+            return SpeedOverTime.over_stations(station, value, waits=self.waits)
+        if self.speeds_over_time is not None:
+            time, value = np.array(self.speeds_over_time).T
+            return SpeedOverTime(time=time, value=value)
+        return ConstantSpeed(self.speed or 0.0)
 
 
 class TrafficSection(Section):
@@ -92,18 +130,29 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         surface, _ = surface_at(draft, f"{place}.on", section.on)
         path = np.array(section.path)
         path = path if surface is None else surface.frame.from_plan(path)
+        law, mistakes = attempted(f"{place}.speeds", lambda s=section: s.law)
+        found += mistakes
+        if law is None:
+            continue
+        # whose corners are rounded drives as vehicles do: what is behind the front axle is pulled
+        steering = section.steering or ("tractrix" if _is_pulled(section) else "path")
         route, mistakes = attempted(
             f"{place}.path",
-            lambda s=section, p=path: Route(
-                points=p, law=ConstantSpeed(s.speed), name=s.name, on=s.on
+            lambda s=section, p=path, law=law, how=steering: Route(
+                points=p, law=law, name=s.name, on=s.on,
+                radius=s.radius, lane=s.lane, steering=how, reverse=s.reverse,
             ),
-        )
+        )  # fmt: skip
         found += mistakes
         if route is not None:
             drives[section.name] = Drive(
                 route=route, vehicle=draft.vehicles[section.vehicle], run_in=section.run_in
             )
     return replace(draft, drives=drives), found
+
+
+def _is_pulled(section: RouteSection) -> bool:
+    return section.radius > 0.0 and not section.reverse
 
 
 def fields(draft: Draft) -> dict[str, Any]:
@@ -119,6 +168,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
     yield from undrawn(draft, "route")
     yield from _traffic(draft)
     yield from _off_slabs(draft)
+    yield from _wheels_off(draft)
     if draft.extent is not None:
         yield from _off_the_floor(draft, draft.extent)
     if draft.plan is not None:
@@ -177,6 +227,60 @@ def _off_slabs(draft: Draft) -> Iterator[Problem]:
                     rule=f"a route must stay on the slabs of {surface.name!r}",
                     remedy="lead it round openings and walls; 'trundle check' draws the plan",
                 )
+
+
+def _wheels_off(draft: Draft) -> Iterator[Problem]:
+    """Give vehicles that cannot drive a route, and wheels beside it that leave the slabs."""
+    method = next(iter(draft.methods.values()), None)
+    for i, section in draft.file.lists.get("route", []):
+        drive = draft.drives.get(section.name)
+        if drive is None or method is None:
+            continue
+        place = f"route[{i + 1}]"
+        crossing, mistakes = attempted(
+            place,
+            lambda d=drive, m=method: Crossing(
+                d.vehicle, d.route, RoadClass("A"), entry=m.entry, run_in=d.run_in
+            ),
+        )
+        yield from mistakes
+        surface, _ = surface_at(draft, place, section.on)
+        if crossing is not None:
+            yield from _aside(draft, place, crossing, surface)
+
+
+def _aside(
+    draft: Draft, place: str, crossing: Crossing, surface: Surface | None
+) -> Iterator[Problem]:
+    """Give the first wheel that stands on no slab while the middle of its route does."""
+    if (
+        not np.any(crossing.vehicle.lateral)
+        and not crossing.route.lane
+        and not crossing.route.radius
+    ):
+        return
+    way = crossing.route.length + crossing.vehicle.length
+    front = np.linspace(0.0, way, max(3, int(way / _LOOKED_AT)))
+    wheels = wheel_places(crossing.route, crossing.footprint, front)
+    station = front[:, None] - crossing.footprint.setback
+    on = (station >= 0.0) & (station <= crossing.route.length)
+    for contact, name in enumerate(crossing.vehicle.contact_names):
+        at = wheels.place[on[:, contact], contact]
+        if surface is not None:
+            off = at[~surface.holds(at)]
+            off = surface.frame.to_plan(off) if len(off) else off
+        else:
+            outside = [draft.extent is not None and is_off(draft.extent, tuple(p)) for p in at]
+            off = at[np.array(outside, dtype=bool)]
+        if len(off):
+            x, y = off[0]
+            yield Problem(
+                place=f"{place}.path",
+                value=f"{name} at ({x:.4g}, {y:.4g}) m",
+                rule="every wheel must stay on the slabs, those beside the path and behind it too",
+                remedy="lead the path further from edges and openings, or round corners wider",
+            )
+            return
 
 
 def _on_held_edges(file: StudyFile, plan: FloorPlan) -> Iterator[Problem]:

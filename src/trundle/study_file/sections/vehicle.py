@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeAlias
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from trundle.errors import InputError, Problem
+from trundle.errors import Problem
 from trundle.study_file.attempt import attempted
 from trundle.study_file.draft import Draft
 from trundle.study_file.fields import (
@@ -28,6 +28,7 @@ from trundle.study_file.fields import (
     Whole,
 )
 from trundle.study_file.kinds import SectionKind
+from trundle.study_file.vehicle_changes import ChangedSection
 from trundle.vehicle import (
     VEHICLES,
     Axle,
@@ -44,43 +45,6 @@ from trundle.vehicle import (
 __all__ = ["VEHICLE", "build"]
 
 
-class PayloadSection(Section):
-    """What a vehicle carries, and where."""
-
-    mass: Annotated[Mass, Field(gt=0.0)]
-    setback: Length
-    aside: Length = 0.0
-    body: Annotated[Whole, Field(ge=0)] = 0
-
-
-class _Changed(Section):
-    """What may be said of every vehicle besides what it is."""
-
-    payload: PayloadSection | None = None
-    track_width: PositiveLength | None = None
-    roll_inertia: tuple[RotaryInertia, ...] = ()
-    contact_patch: NonNegativeLength | None = None
-    wheel_radius: NonNegativeLength | None = None
-
-    def changed(self, one: Description) -> Description:
-        """Return a vehicle as this section wants it."""
-        if self.track_width is None and self.roll_inertia:
-            raise InputError("roll_inertia is of a vehicle in space: give its track_width too")
-        if self.track_width is not None:
-            one = one.widened(self.track_width, roll_inertia=self.roll_inertia)
-        if self.payload is not None:
-            load = self.payload
-            one = one.loaded(load.mass, body=load.body, setback=load.setback, aside=load.aside)
-            if load.aside and not any(body.roll_inertia for body in one.bodies):
-                raise InputError(
-                    "a payload aside of the middle rolls its vehicle: give the vehicle's "
-                    "track_width too"
-                )
-        keys = ("contact_patch", "wheel_radius")
-        said = {key: getattr(self, key) for key in keys if getattr(self, key) is not None}
-        return replace(one, **said)
-
-
 class BodySection(Section):
     """A rigid body."""
 
@@ -89,6 +53,7 @@ class BodySection(Section):
     centre: Length = 0.0
     roll_inertia: RotaryInertia = 0.0
     aside: Length = 0.0
+    height: NonNegativeLength = 0.0
 
 
 class AxleSection(Section):
@@ -136,7 +101,7 @@ class HingeSection(Section):
     rolls_together: Flag = True
 
 
-class PlanarVehicleSection(_Changed):
+class PlanarVehicleSection(ChangedSection):
     """A vehicle built from bodies, hinges, axles and bogies."""
 
     kind: Literal["planar"]
@@ -153,7 +118,7 @@ class PlanarVehicleSection(_Changed):
         return self
 
 
-class DataSheetSection(_Changed):
+class DataSheetSection(ChangedSection):
     """A vehicle as its data sheet tells it."""
 
     kind: Literal["data_sheet"]
@@ -198,7 +163,7 @@ else:  # the names are known only when the folder of vehicles has been read
     LibraryKind = Literal[tuple(VEHICLES)]
 
 
-class LibraryVehicleSection(_Changed):
+class LibraryVehicleSection(ChangedSection):
     """A vehicle of the library."""
 
     kind: LibraryKind

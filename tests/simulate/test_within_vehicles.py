@@ -1,0 +1,254 @@
+"""What a vehicle brings itself: braking that pitches it, engines, wheels that are not round."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from models import small_floor
+from trundle.dynamics import ModalRatio
+from trundle.errors import InputError
+from trundle.road import Profile, RoadClass
+from trundle.route import Route, SpeedOverTime, StaticStart
+from trundle.simulate import (
+    Coupled,
+    Crossing,
+    Decoupled,
+    Modal,
+    contact_forces,
+    ensemble,
+    point_load_deflection,
+)
+from trundle.vehicle import (
+    GRAVITY,
+    Axle,
+    Body,
+    BodyForce,
+    Description,
+    OutOfRound,
+    build_vehicle,
+    describe,
+)
+
+EVERY = Modal(f_max=90.0, dt=0.005)
+SMOOTH = Profile.smooth()
+Y, MID, STOP = 3.0, (4.0, 3.0), 8.0
+
+
+def van(**more):
+    """Two axles 3 m apart on tyres alone, its mass of 2 t 0.9 m high and 1.2 m behind the front."""
+    stiffness, damping = 4e5, 1.2e4
+    return Description(
+        name="van",
+        bodies=(Body(mass=2000.0, pitch_inertia=2500.0, centre=1.2, height=0.9),),
+        axles=tuple(Axle(body=0, setback=x, stiffness=stiffness, damping=damping)
+                    for x in (0.0, 3.0)),
+        **more,
+    )  # fmt: skip
+
+
+def forces_of(vehicle, route, road=SMOOTH, duration=12.0, n_runs=1, **more):
+    crossing = Crossing(vehicle, route, road, **more)
+    time, forces = contact_forces(
+        crossing, integration=EVERY, n_runs=n_runs, seed=1, duration=duration
+    )
+    return time, forces, crossing
+
+
+def way(*values, length=200.0):
+    law = SpeedOverTime(time=np.array([0.0, 4.0, 9.0, 20.0]), value=np.array(values, float))
+    return Route(points=np.array([[0.0, 0.0], [length, 0.0]]), law=law)
+
+
+def test_steady_braking_presses_the_front_by_mass_height_and_wheelbase():
+    """``m a h / l`` from the rear to the front once pitching has died away; nothing in sum."""
+    vehicle = van().build()
+    time, forces, _ = forces_of(vehicle, way(12.0, 12.0, 2.0, 2.0))
+    braking = (time > 7.0) & (time < 8.9)
+    dynamic = forces[0][braking, :2] - vehicle.static_forces
+    shift = 2000.0 * 2.0 * 0.9 / 3.0
+    np.testing.assert_allclose(dynamic[-1], [shift, -shift], rtol=1e-3)
+    steady = forces[0][time < 3.9, :2] - vehicle.static_forces
+    assert np.abs(steady).max() < 1e-9 * shift
+    # the moment alone bounces nothing: the body's height moves with its pitch alone
+    assert forces[0][:, 2:].max() == 0.0
+
+
+def test_the_pitch_that_braking_starts_is_that_of_one_oscillator():
+    """A body whose springs are as far before its centre as behind: pitch alone, by Duhamel.
+
+    Step of moment M: theta = M/K (1 - exp(-zwt)(cos wd t + z w/wd sin wd t)); the front spring
+    carries k theta l/2 and its damper the rest.
+    """
+    k, c, m, inertia, h, span = 4e5, 6e3, 2000.0, 2500.0, 0.9, 3.0
+    body = Body(mass=m, pitch_inertia=inertia, centre=1.5, height=h)
+    axles = tuple(Axle(body=0, setback=x, stiffness=k, damping=c) for x in (0.0, span))
+    vehicle = build_vehicle(name="v", bodies=(body,), axles=axles)
+    law = SpeedOverTime(time=np.array([0.0, 2.0, 6.0]), value=np.array([10.0, 10.0, 2.0]))
+    route = Route(points=np.array([[0.0, 0.0], [90.0, 0.0]]), law=law)
+    time, forces, _ = forces_of(vehicle, route, duration=5.5)
+    turn, drag = k * span**2 / 2, c * span**2 / 2
+    w, z = np.sqrt(turn / inertia), drag / 2 / np.sqrt(turn * inertia)
+    wd, t = w * np.sqrt(1 - z**2), np.maximum(time - 2.0, 0.0)
+    decay = np.exp(-z * w * t)
+    moment = m * 2.0 * h
+    angle = moment / turn * (1 - decay * (np.cos(wd * t) + z * w / wd * np.sin(wd * t)))
+    rate = moment / (inertia * wd) * decay * np.sin(wd * t)
+    expected = (k * angle + c * rate) * span / 2
+    found = forces[0][:, 0] - vehicle.static_forces[0]
+    assert np.abs(found - expected).max() < 0.01 * expected.max()
+
+
+@pytest.mark.parametrize("f", [1.5, 4.2, 9.0])
+def test_an_engine_shakes_a_floor_by_what_its_springs_let_through(f):
+    """A mass on a spring under F cos: the steady force on the ground is F |k + iwc| / |k - mw2 + iwc|."""
+    m, k, c, force = 1500.0, 8e5, 9e3, 300.0
+    vehicle = Description(
+        name="engine",
+        bodies=(Body(mass=m),),
+        axles=(Axle(body=0, setback=0.0, stiffness=k, damping=c),),
+        forces=(BodyForce(amplitude=force, frequency=f),),
+    ).build()
+    route = Route.straight((0, 0), (90, 0), speed=3.0)
+    time, forces, _ = forces_of(vehicle, route, duration=20.0)
+    dynamic = forces[0][:, 0] - vehicle.static_forces[0]
+    w = 2 * np.pi * f
+    gain = abs(k + 1j * w * c) / abs(k - m * w**2 + 1j * w * c)
+    late = time > 10.0
+    fit = np.stack([np.cos(w * time[late]), np.sin(w * time[late])], axis=1)
+    found = np.hypot(*np.linalg.lstsq(fit, dynamic[late], rcond=None)[0])
+    # the step of 5 ms holds a wave of 9 Hz to (w dt)^2 / 12 = 0.7 %
+    assert found == pytest.approx(force * gain, rel=(w * 0.005) ** 2 / 12 + 1e-3)
+
+
+def test_a_driveline_turns_with_the_wheels_and_a_mast_acts_while_it_is_told():
+    """Order 2 at 3 m/s on 0.3 m: 2 x 3 / (2 pi 0.3) = 3.18 Hz; before and behind, nothing."""
+    driveline = BodyForce(amplitude=10.0, order=2.0, radius=0.3)
+    t = np.linspace(0.0, 10.0, 10001)
+    found = driveline.force(t, 3.0 * t)
+    crossings = np.sum(np.diff(np.sign(found)) != 0)
+    assert crossings == pytest.approx(2 * 10.0 * 2 * 3.0 / (2 * np.pi * 0.3), abs=1)
+    mast = BodyForce(amplitude=10.0, frequency=5.0, during=(2.0, 3.0))
+    acts = mast.force(t, t) != 0.0
+    assert t[acts].min() == pytest.approx(2.0, abs=0.06)
+    assert t[acts].max() == pytest.approx(3.0, abs=0.06)
+
+
+def test_runout_is_a_wave_of_the_rolling_circumference():
+    """1 mm round a wheel of 0.35 m is what a road with that wave under every wheel does."""
+    vehicle = van(rounds=(OutOfRound(amplitude=1e-3, radius=0.35),)).build()
+    route = Route.straight((0, 0), (60, 0), speed=5.0)
+    time, forces, _ = forces_of(vehicle, route, duration=8.0, run_in=30.0)
+    n = 1 / 0.35
+    s = np.arange(-60.0, 90.0, 0.01)
+    # each wheel meets its wave by its own station, as each wheel meets a road
+    road = Profile(station=s, elevation=1e-3 * np.cos(n * s), slope=-1e-3 * n * np.sin(n * s))
+    plain = van().build()
+    _, expected, _ = forces_of(plain, route, road, duration=8.0, run_in=30.0)
+    late = time > 4.0
+    np.testing.assert_allclose(
+        forces[0][late], expected[0][late], atol=1e-3 * np.ptp(expected[0][late])
+    )
+
+
+@pytest.mark.parametrize("kind", [Decoupled, Coupled])
+def test_a_truck_stops_inside_and_stands_there(kind):
+    """It brakes to rest at x = 8 m: the floor then carries its weight, and sags as for it.
+
+    The sag long after is the static one under the wheels where they stand, by the same floor; the
+    record is whole: the vehicle has come to rest, and nothing is said of wheels that have not left.
+    """
+    floor, vehicle = small_floor(), van().build()
+    law = SpeedOverTime.over_stations([0.0, 4.0, STOP], [3.0, 3.0, 0.0])
+    route = Route(points=np.array([[0.0, Y], [12.0, Y]]), law=law)
+    crossing = Crossing(vehicle, route, SMOOTH)
+    assert crossing.stays
+    assert crossing.exit_time == pytest.approx(4.0 / 3.0 + 2.0 * 4.0 / 3.0)
+    method = kind(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.05))
+    runs = ensemble(
+        floor, crossing, method=method, points={"mid": MID}, n_runs=1, seed=1, duration=20.0
+    )
+    assert runs.coverage.left
+    static = sum(
+        point_load_deflection(floor, (x, Y), force=f, points={"mid": MID})["mid"]
+        for x, f in zip((STOP, STOP - 3.0), vehicle.static_forces, strict=True)
+    )
+    assert runs.displacement[0, -1, 0] == pytest.approx(static, rel=2e-3)
+
+
+def test_a_standing_start_leaves_the_floor_as_it_was():
+    """From rest on the floor off it: equilibrium at first, and no sag at the end."""
+    flat = replace(van(), bodies=(Body(mass=2000.0, pitch_inertia=2500.0, centre=1.2),))
+    floor, vehicle = small_floor(), flat.build()  # its mass lies low: it does not pitch
+    law = SpeedOverTime.over_stations([0.0, 3.0, 40.0], [0.0, 4.0, 4.0])
+    route = Route(points=np.array([[1.0, Y], [12.0, Y]]), law=law)
+    crossing = Crossing(vehicle, route, SMOOTH, entry=StaticStart(exit_length=1.0))
+    method = Coupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.05))
+    runs = ensemble(
+        floor, crossing, method=method, points={"mid": MID}, n_runs=1, seed=1, duration=25.0
+    )
+    sag = runs.displacement[0, :, 0]
+    assert abs(sag[-1]) < 2e-3 * abs(sag[0])
+    assert np.abs(runs.velocity[0, :3, 0]).max() < 0.02 * np.abs(runs.velocity[0, :, 0]).max()
+
+
+def test_a_stop_behind_the_end_is_refused():
+    """Half of it would stand on nothing."""
+    law = SpeedOverTime.over_stations([0.0, 13.0], [3.0, 0.0])
+    route = Route(points=np.array([[0.0, Y], [12.0, Y]]), law=law)
+    with pytest.raises(InputError, match="1 m behind the route's end"):
+        Crossing(van().build(), route, SMOOTH)
+
+
+def test_a_vehicle_driving_backwards_is_its_mirror_image():
+    """A two-axle van in reverse presses as one built the other way round, on any road."""
+    route = Route.straight((0, 0), (40, 0), speed=3.0)
+    back = Route(points=route.points, law=route.law, reverse=True)
+    turned = replace(
+        van(),
+        bodies=(Body(mass=2000.0, pitch_inertia=2500.0, centre=1.8, height=0.9),),
+    )
+    _, found, _ = forces_of(van().build(), back, RoadClass("C"))
+    _, expected, _ = forces_of(turned.build(), route, RoadClass("C"))
+    np.testing.assert_allclose(found[0][:, ::-1], expected[0], rtol=1e-8)
+
+
+def test_wheels_beside_a_sharp_corner_are_refused():
+    """They would jump; with a radius, or on the line, they do not."""
+    points = np.array([[0.0, 3.0], [9.0, 3.0], [9.0, 6.0]])
+    law = SpeedOverTime(time=np.array([0.0, 1.0]), value=np.array([2.0, 2.0]))
+    wide = describe("van_vw_vanagon").widened(1.5).build()
+    with pytest.raises(InputError, match=r"0.75 m beside its line would jump"):
+        Crossing(wide, Route(points=points, law=law), RoadClass("B"))
+    Crossing(wide, Route(points=points, law=law, radius=2.5), RoadClass("B"))
+    Crossing(van().build(), Route(points=points, law=law), RoadClass("B"))
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: BodyForce(amplitude=1.0), "a frequency of its own, or an order"),
+        (lambda: BodyForce(amplitude=1.0, frequency=2.0, order=1.0, radius=0.3), "a frequency"),
+        (lambda: BodyForce(amplitude=1.0, order=2.0), "radius of the"),
+        (lambda: OutOfRound(amplitude=1e-3, radius=0.3, order=0), "order must be 1"),
+        (lambda: van(forces=(BodyForce(amplitude=1.0, frequency=2.0, body=3),)).build(), "0 to 0"),
+    ],
+)
+def test_what_cannot_be_is_refused(make, words):
+    with pytest.raises(InputError, match=words):
+        make()
+
+
+def test_lifting_off_is_told_of_wheels_alone():
+    """An engine's force is negative half of the time, and lifts nothing off the ground."""
+    floor = small_floor()
+    vehicle = van(forces=(BodyForce(amplitude=50.0, frequency=7.0, setback=0.5),)).build()
+    crossing = Crossing(vehicle, Route.straight((0, Y), (12, Y), speed=4.0), SMOOTH)
+    method = Decoupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.05))
+    runs = ensemble(floor, crossing, method=method, points={"a": MID}, n_runs=1, seed=1)
+    assert not any("pull on the floor" in one.message for one in runs.warnings)
+    assert runs.contact_names == ("axle 1", "axle 2", "engine")
+    assert runs.contact_forces[0, :, 2].max() == 0.0
+    assert runs.velocity[0].std() > 0.0
+    assert vehicle.total_mass == pytest.approx(2000.0)
+    assert vehicle.static_forces.sum() == pytest.approx(2000.0 * GRAVITY)

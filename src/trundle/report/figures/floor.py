@@ -96,7 +96,8 @@ def plan_figure(study: Study, plan: FloorPlan) -> Figure:
         )
         speed = in_kmh(route.law.fastest)
         middle, direction = route.locate(np.array([0.72 * route.length]))
-        angle = np.degrees(np.arctan2(direction[0, 1], direction[0, 0]))
+        angle = float(np.degrees(np.arctan2(direction[0, 1], direction[0, 0])))
+        angle = angle if -90.0 < angle <= 90.0 else angle + 180.0  # readable from below
         axes.annotate(
             f"{name}, {speed}",
             middle[0],

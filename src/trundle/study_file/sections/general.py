@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from trundle.errors import Problem
+from trundle.errors import InputError, Problem
 from trundle.road import RoadClass
 from trundle.simulate import Crossing
 from trundle.simulate.ensembles import LEAST_BATCH
@@ -99,4 +99,7 @@ def _time_needed(drive: Drive) -> float:
 def _run_in_time(drive: Drive) -> float:
     """Return how long a vehicle drives on rigid ground before the record begins [s]."""
     anywhere = RoadClass("A")
-    return Crossing(drive.vehicle, drive.route, anywhere, run_in=drive.run_in).run_in_time
+    try:
+        return Crossing(drive.vehicle, drive.route, anywhere, run_in=drive.run_in).run_in_time
+    except InputError:  # what cannot be driven is told of the route
+        return 0.0

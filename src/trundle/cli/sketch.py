@@ -12,11 +12,12 @@ _WIDTH = 66
 _ASPECT = 0.5  # a character is about twice as tall as wide
 
 
-def _along(ring: np.ndarray) -> np.ndarray:
-    """Return many places along a closed line [m]."""
-    ends = np.roll(ring, -1, axis=0)
+def _along(line: np.ndarray, *, closed: bool = True) -> np.ndarray:
+    """Return many places along a line [m], closed or not."""
+    ends = np.roll(line, -1, axis=0)
+    starts, ends = (line, ends) if closed else (line[:-1], ends[:-1])
     shares = np.linspace(0.0, 1.0, 200)[:, None, None]
-    return (ring + shares * (ends - ring)).reshape(-1, 2)
+    return (starts + shares * (ends - starts)).reshape(-1, 2)
 
 
 def plan_sketch(study: Study) -> str:
@@ -42,11 +43,12 @@ def plan_sketch(study: Study) -> str:
     legend = []
     for i, (name, drive) in enumerate(study.drives.items()):
         letter = chr(ord("a") + i % 26)
-        stations = np.linspace(0.0, drive.route.length, 400)
-        _put(study.in_plan(drive.route.locate(stations)[0], drive.route.on), letter)
+        way = study.way_in_plan(drive.route)
+        _put(_along(way, closed=False), letter)
         speed = 3.6 * drive.route.law.fastest
-        _put(study.in_plan(drive.route.line[-1:], drive.route.on), ">")
-        on = "" if drive.route.on is None else f" on {drive.route.on}"
+        _put(way[-1:], ">")
+        names = ", ".join(one for one in drive.route.visited if one is not None)
+        on = f" on {names}" if names else ""
         legend.append(f"  {letter}  route {name}{on}: {speed:g} km/h, ends at >")
     for i, (name, spot) in enumerate(study.points.items()):
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)

@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from trundle._checks import finite, frozen_array, non_negative, one_of, set_frozen
 from trundle._kinds import kinds_checked
@@ -18,6 +18,7 @@ from trundle.route.speed import ConstantSpeed, SpeedLaw
 
 __all__ = ["Route", "Steering"]
 
+_THERE = 1e-6  # m
 _DRAWN = 25  # places on an arc, where it is drawn
 
 Steering: TypeAlias = Literal["path", "tractrix"]
@@ -39,6 +40,9 @@ class Route:
         Name for tables.
     on : str or None
         Name of the surface that the way lies on; None where a structure has only one.
+    surfaces : tuple of str
+        Name of the surface of every leg between two points, of a way through several: over a ramp
+        from one storey to another. Its points, stations and speeds are then those in plan.
     radius : float
         By which corners are rounded [m]; 0 leaves them sharp, for wheels on the line alone.
     lane : float
@@ -54,6 +58,7 @@ class Route:
     law: SpeedLaw
     name: str = "route"
     on: str | None = None
+    surfaces: tuple[str, ...] = ()
     radius: float = 0.0
     lane: float = 0.0
     steering: Steering = "path"
@@ -73,12 +78,24 @@ class Route:
             radius=non_negative("radius", self.radius),
             lane=finite("lane", self.lane),
         )
+        self._check_surfaces()
         bends = self.legs.curvature
         if np.any(1.0 - bends * self.lane <= 0.0):
             raise InputError(
                 f"route {self.name!r}: a lane {self.lane:g} m aside has no way round a corner of "
                 f"{self.radius:g} m: give a larger radius"
             )
+
+    def _check_surfaces(self) -> None:
+        """Refuse surfaces that are not one a leg, or that meet in a rounded corner."""
+        if not self.surfaces:
+            return
+        if self.on is not None or len(self.surfaces) != len(self.points) - 1:
+            raise InputError(
+                f"route {self.name!r} has {len(self.points) - 1} legs: name the surface of each, "
+                f"or one for all; got {len(self.surfaces)}"
+            )
+        _ = self.breaks
 
     @classmethod
     def straight(
@@ -90,8 +107,44 @@ class Route:
 
     @cached_property
     def legs(self) -> Legs:
-        """Lines and arcs of the way."""
+        """The way as lines and arcs."""
         return legs_of(self.points, self.radius, self.name)
+
+    @cached_property
+    def breaks(self) -> Float[Array, " changes"]:
+        """Where it comes onto another surface, as stations [m].
+
+        Raises
+        ------
+        InputError
+            One that lies in a rounded corner.
+        """
+        at = [i for i in range(1, len(self.surfaces)) if self.surfaces[i] != self.surfaces[i - 1]]
+        ends = self.legs.station
+        places = self.legs.at(ends)[0]
+        found: list[float] = []
+        for i in at:
+            away = np.linalg.norm(places - self.points[i], axis=1)
+            if away.min() > _THERE:
+                x, y = self.points[i]
+                raise InputError(
+                    f"route {self.name!r} comes onto {self.surfaces[i]!r} at ({x:g}, {y:g}) m, in "
+                    "a corner that is rounded: let it come there straight"
+                )
+            found.append(float(ends[int(away.argmin())]))
+        return np.array(found)
+
+    @property
+    def visited(self) -> tuple[str | None, ...]:
+        """Which surfaces it comes onto, in that order."""
+        if not self.surfaces:
+            return (self.on,)
+        pairs = zip(self.surfaces, ("", *self.surfaces), strict=False)
+        return tuple(one for one, before in pairs if one != before)
+
+    def leg_of(self, station: ArrayLike) -> Int[Array, ...]:
+        """Return which of the surfaces visited stations lie on, from 0."""
+        return np.searchsorted(self.breaks, np.asarray(station, float), "right")
 
     @property
     def length(self) -> float:
@@ -106,13 +159,29 @@ class Route:
 
     @property
     def line(self) -> Float[Array, "places 2"]:
-        """Places along the way, close enough to draw it [m]."""
+        """The way as places, close enough to draw it [m]."""
         if self.radius == 0.0 and self.lane == 0.0:
             return self.points
-        ends = self.legs.station
+        ends = np.concatenate([self.legs.station, self.breaks])
         bent = np.flatnonzero(self.legs.curvature)
-        arcs = [np.linspace(ends[i], ends[i + 1], _DRAWN) for i in bent]
+        legs = self.legs.station
+        arcs = [np.linspace(legs[i], legs[i + 1], _DRAWN) for i in bent]
         return self.locate(np.unique(np.concatenate([ends, *arcs])))[0]
+
+    def line_on(self, name: str | None) -> Float[Array, "places 2"]:
+        """Return what of the line lies on a surface; nothing if none of it does.
+
+        In the surface's own axes, or in plan if the way leads through several.
+        """
+        if not self.surfaces:
+            return self.line if name in (self.on, None) or self.on is None else self.line[:0]
+        edges = np.concatenate([[0.0], self.breaks, [self.length]])
+        parts = [
+            np.linspace(low, high, _DRAWN)
+            for low, high, there in zip(edges[:-1], edges[1:], self.visited, strict=True)
+            if there == name or name is None
+        ]
+        return self.locate(np.concatenate(parts))[0] if parts else self.line[:0]
 
     def reversed(self) -> Route:
         """Return the same line driven the other way."""

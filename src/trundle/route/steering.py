@@ -42,7 +42,7 @@ class Led(Protocol):
 
     @property
     def contacts(self) -> tuple[int, ...]:
-        """Numbers of its wheels."""
+        """Which wheels are on it, by number."""
         ...
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from trundle._typing import Array
 from trundle.route.entry import Entry
@@ -43,11 +43,15 @@ class Track:
     on : str or None
         Name of the surface; None for the only one.
     place, direction : ndarray of float, shape (n_times, n_contacts, 2)
-        Places on it [m], and unit directions of travel.
+        Places on it [m], and unit directions of travel; in plan where there are several.
     speed : ndarray of float, shape (n_times, n_contacts)
         Speed along the direction [m/s].
     share, share_slope : ndarray of float, shape (n_times, n_contacts)
         Share of a contact's force that the structure carries, and its slope along the way [1/m].
+    surfaces : tuple of str
+        Names of the surfaces of a way through several; empty of a way on one.
+    which : ndarray of int or None, shape (n_times, n_contacts)
+        On which of these each contact is.
     """
 
     on: str | None
@@ -56,6 +60,8 @@ class Track:
     speed: Float[Array, "times contacts"]
     share: Float[Array, "times contacts"]
     share_slope: Float[Array, "times contacts"]
+    surfaces: tuple[str, ...] = ()
+    which: Int[Array, "times contacts"] | None = None
 
 
 def follow(
@@ -89,4 +95,6 @@ def follow(
         speed=along.speed * wheels.stretch,
         share=share,
         share_slope=share_slope / stretch,
+        surfaces=tuple(str(one) for one in route.visited) if route.surfaces else (),
+        which=route.leg_of(station) if route.surfaces else None,
     )

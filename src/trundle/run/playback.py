@@ -18,6 +18,7 @@ from trundle.simulate.laying_out import point_rows
 from trundle.simulate.layout import Layout
 from trundle.simulate.modal.field import field_motion
 from trundle.simulate.modal.method import FloorInModes
+from trundle.simulate.wheels.surfaces import tracks_on
 from trundle.simulate.wheels.timeline import starts_standing
 from trundle.structure import Spot, Structure
 from trundle.study.model import Study
@@ -272,8 +273,11 @@ def _wheels(
     for source, begins in zip(layout.sources, layout.timeline.begins, strict=True):
         track = source.track(layout.timeline.record[steps], begins)
         n = len(source.contact_names)
-        frame = prepared.floor.surface(track.on).frame
-        places = frame.in_space(track.place.reshape(-1, 2)).reshape(len(steps), n, 3)
+        places = np.zeros((track.share.size, 3))
+        for part in tracks_on(prepared.floor, track):
+            frame = prepared.floor.surface(part.on).frame
+            places[part.there] = frame.in_space(part.place[part.there])
+        places = places.reshape(len(steps), n, 3)
         yield Wheels(
             name=source.name,
             contact_names=source.contact_names,

@@ -118,16 +118,17 @@ def _ways(study: Study, building: Building) -> Iterator[FitnessWarning]:
     """Doubt routes through walls and columns."""
     storeys = [storey.name for storey in building.storeys]
     for name, drive in study.drives.items():
-        on = drive.route.on or next(iter(study.floor.surfaces))
-        if on not in storeys:
-            continue
-        line = study.in_plan(drive.route.line, drive.route.on)
-        for part, x, y in in_the_way(building, on, line):
-            yield FitnessWarning(
-                subject="route",
-                message=f"{name} runs through {part} at ({x:.4g}, {y:.4g}) m, which stands on "
-                f"{on!r}: lead it round, unless there is a gate",
-            )
+        for visited in drive.route.visited:
+            on = visited or next(iter(study.floor.surfaces))
+            if on not in storeys:
+                continue
+            line = study.way_in_plan(drive.route, visited)
+            for part, x, y in in_the_way(building, on, line):
+                yield FitnessWarning(
+                    subject="route",
+                    message=f"{name} runs through {part} at ({x:.4g}, {y:.4g}) m, which stands on "
+                    f"{on!r}: lead it round, unless there is a gate",
+                )
 
 
 def _mesh(study: Study, plan: FloorPlan) -> Iterator[FitnessWarning]:

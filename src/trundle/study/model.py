@@ -14,7 +14,7 @@ from trundle._typing import Array
 from trundle.criteria import Criterion
 from trundle.errors import FitnessWarning, InputError
 from trundle.road import Road, RoughnessBand
-from trundle.route import ConstantSpeed
+from trundle.route import ConstantSpeed, Route
 from trundle.signals import Isolation
 from trundle.simulate import Crossing
 from trundle.simulate.sources.crossing import TAIL
@@ -195,6 +195,18 @@ class Study:
     def in_plan(self, xy: Float[Array, "n 2"], on: str | None) -> Float[Array, "n 2"]:
         """Return where in plan places of a surface are [m]."""
         return self.floor.surface(on).frame.to_plan(np.asarray(xy, dtype=float))
+
+    def way_in_plan(self, route: Route, on: str | None = None) -> Float[Array, "places 2"]:
+        """Return where in plan a route runs [m]: all of it, or what of it lies on a surface."""
+        line = route.line_on(on)
+        return line if route.surfaces or not len(line) else self.in_plan(line, route.on)
+
+    def way_in_space(self, route: Route) -> Float[Array, "places 3"]:
+        """Return where in space a route runs [m]."""
+        if not route.surfaces:
+            return self.floor.surface(route.on).frame.in_space(np.asarray(route.line))
+        parts = [(self.floor.surface(on).frame, route.line_on(on)) for on in route.visited]
+        return np.concatenate([f.in_space(f.from_plan(line)) for f, line in parts])
 
     def meshed(self, factor: float) -> Study:
         """Return the study on a mesh whose sizes are times a factor.

@@ -180,10 +180,7 @@ def _view(result: StudyResult, view: MapView) -> dict[str, Any]:
 def _lines(result: StudyResult) -> dict[str, Array]:
     """Return routes in plan [m]."""
     study = result.study
-    return {
-        name: study.in_plan(drive.route.line, drive.route.on)
-        for name, drive in study.drives.items()
-    }
+    return {name: study.way_in_plan(drive.route) for name, drive in study.drives.items()}
 
 
 def _places(result: StudyResult) -> dict[str, Array]:
@@ -197,7 +194,7 @@ def _places(result: StudyResult) -> dict[str, Array]:
 
 def _on(result: StudyResult, routes: Sequence[str], on: str | None) -> list[str]:
     """Return the routes that lie on a surface."""
-    return [name for name in routes if result.study.drives[name].route.on == on]
+    return [name for name in routes if on in result.study.drives[name].route.visited]
 
 
 def _readings(rows: np.ndarray) -> list[list[float | None]]:

@@ -119,9 +119,7 @@ def _modes(structure: Structure, modes: Modes) -> list[dict[str, Any]]:
 
 def _routes(study: Study) -> Iterator[dict[str, Any]]:
     for name, drive in study.drives.items():
-        frame = study.floor.surface(drive.route.on).frame
-        places = frame.in_space(np.asarray(drive.route.line))
-        yield {"name": name, "places": places.tolist()}
+        yield {"name": name, "places": study.way_in_space(drive.route).tolist()}
 
 
 def _points(study: Study) -> Iterator[dict[str, Any]]:

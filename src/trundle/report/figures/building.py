@@ -71,8 +71,8 @@ def storey_figure(study: Study, building: Building, name: str) -> Figure:
     _draw_members(axes, building, name)
     _draw_grid(axes, building, low, high)
     for i, (route, drive) in enumerate(study.drives.items()):
-        if drive.route.on in (name, None):
-            line = study.in_plan(drive.route.line, drive.route.on)
+        line = study.way_in_plan(drive.route, name)
+        if len(line):
             draw_route(axes, line, f"{route}, {in_kmh(drive.route.law.fastest)}", i)
     for point, spot in study.points.items():
         if spot.on in (name, None):

@@ -208,9 +208,9 @@ def _image(panel: Axes, study: Study, view: MapView, values: Array, **look: obje
         _draw_nothing(panel, view)
     for name in view.routes:
         route = study.drives[name].route
-        if route.on != view.grid.on:
+        if view.grid.on not in route.visited:
             continue
-        line = study.in_plan(route.line, route.on).T
+        line = study.way_in_plan(route, view.grid.on).T
         panel.plot(*line, color="white", linewidth=2.4)
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
     for spot in study.points.values():

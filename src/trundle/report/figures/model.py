@@ -66,8 +66,8 @@ def plan_figure(study: Study, name: str) -> Figure:
     _draw_plates(axes, surface)
     _draw_members(axes, study, surface)
     for i, (route, drive) in enumerate(study.drives.items()):
-        if drive.route.on in {name, None}:
-            line = study.in_plan(drive.route.line, drive.route.on)
+        line = study.way_in_plan(drive.route, name)
+        if len(line):
             draw_route(axes, line, f"{route}, {in_kmh(drive.route.law.fastest)}", i)
     for point, spot in study.points.items():
         if spot.on in {name, None}:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -105,6 +105,17 @@ class Passage:
             track.share[:, -crossing.vehicle.inner :] = 0.0
             track.share_slope[:, -crossing.vehicle.inner :] = 0.0
         return track
+
+    def swept(self) -> Track:
+        """Return where its wheels are all along its way, each carried where it is on it."""
+        crossing = self.crossing
+        way = crossing.route.length + crossing.vehicle.length
+        front = np.linspace(0.0, way, _PLACES_A_METRE * int(way) + 2)
+        station = front[:, None] - crossing.vehicle.setback
+        along = Along(time=front, station=station, speed=np.ones_like(station))
+        track = follow(crossing.route, crossing.entry, crossing.footprint, along)
+        on = (station >= 0.0) & (station <= crossing.route.length)
+        return replace(track, share=on.astype(float))
 
     def way(self) -> Iterator[tuple[Float[Array, "places 2"], Float[Array, "places 2"]]]:
         """Give places all along each track of its wheels."""
@@ -259,7 +270,7 @@ def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
 
 
 def _mesh_passing(crossing: Crossing, structure: Structure, modes: Modes | None) -> FitnessWarning:
-    size = structure.surface(crossing.route.on).element_size
+    size = min(structure.surface(on).element_size for on in crossing.route.visited)
     speed = crossing.route.law.fastest
     passing = speed / size * np.arange(1, _HARMONICS + 1)
     note = f"hat functions of {size:.3g} m are passed at {speed / size:.3g} Hz and its multiples"

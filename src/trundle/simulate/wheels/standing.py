@@ -15,8 +15,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from trundle._typing import Array
-from trundle.route import ContactRows, Track, contact_rows
+from trundle.route import ContactRows, contact_rows
+from trundle.simulate.sources.passage import Passage
 from trundle.simulate.sources.source import Source
+from trundle.simulate.wheels.surfaces import tracks_on
 from trundle.simulate.wheels.timeline import Timeline, columns_of
 from trundle.structure import ContactShape, Hermite, Structure
 
@@ -97,21 +99,14 @@ class StandingWheels:
         for source, begins, columns in self._parts:
             track = source.track(time, begins)
             speed[:, columns] = track.speed
-            on = np.flatnonzero(((track.share != 0.0) | (track.share_slope != 0.0)).ravel())
-            step, contact = np.divmod(on, track.share.shape[1])
-            found.append((step * self.n_contacts + columns.start + contact, self._of(track, on)))
+            standing = ((track.share != 0.0) | (track.share_slope != 0.0)).ravel()
+            for part in tracks_on(self._structure, track):
+                on = np.flatnonzero(standing & part.there)
+                step, contact = np.divmod(on, track.share.shape[1])
+                speed[step, columns.start + contact] *= part.stretch[on]
+                rows = part.rows(self._structure, on, self._shape)
+                found.append((step * self.n_contacts + columns.start + contact, rows))
         return _laid_in(found, n_rows, self.n_dofs), speed
-
-    def _of(self, track: Track, on: Int[Array, " some"]) -> ContactRows:
-        """Return the rows of those contacts that stand on the structure."""
-        rows = contact_rows(
-            self._structure,
-            track.place.reshape(-1, 2)[on],
-            track.direction.reshape(-1, 2)[on],
-            shape=self._shape,
-            on=track.on,
-        )
-        return rows.scaled(track.share.ravel()[on], track.share_slope.ravel()[on])
 
 
 def _laid_in(found: list[tuple[Array, ContactRows]], n_rows: int, n_dofs: int) -> ContactRows:
@@ -129,9 +124,15 @@ def _laid_in(found: list[tuple[Array, ContactRows]], n_rows: int, n_dofs: int) -
 
 def route_dofs(structure: Structure, sources: tuple[Source, ...]) -> Int[Array, " dofs"]:
     """Return the dofs that wheels load on their way over a structure, rising."""
-    found = [
-        contact_rows(structure, places, directions, shape=Hermite(), on=source.on).used_dofs()
-        for source in sources
-        for places, directions in source.way()
-    ]
+    found: list[Array] = []
+    for source in sources:
+        if isinstance(source, Passage) and source.crossing.route.surfaces:
+            for part in tracks_on(structure, source.swept()):
+                on = np.flatnonzero(part.there & (part.track.share.ravel() != 0.0))
+                found.append(part.rows(structure, on, Hermite()).used_dofs())
+            continue
+        found += [
+            contact_rows(structure, places, directions, shape=Hermite(), on=source.on).used_dofs()
+            for places, directions in source.way()
+        ]
     return np.unique(np.concatenate(found))

@@ -215,6 +215,14 @@ def _at_supports(section: BuildingSection, building: Building) -> Iterator[Refin
             yield Refinement(line=line, size=size, reach=1.0, sheet=storey.name)
 
 
+def _ways_of(route: Any, default: str | None) -> list[tuple[Any, str | None]]:
+    """Return the lines of a route on each of its surfaces."""
+    line = np.array(route.path, dtype=float)
+    if not route.through:
+        return [(line, route.only or default)]
+    return [(line[i : i + 2], on) for i, on in enumerate(route.through)]
+
+
 def _meshing(draft: Draft, section: BuildingSection, building: Building, maker: Maker) -> Meshing:
     """Return how a building is meshed: finer where asked, and along routes and points."""
     refinements: list[Refinement] = []
@@ -223,13 +231,13 @@ def _meshing(draft: Draft, section: BuildingSection, building: Building, maker: 
     for i, one in enumerate(section.refine, start=1):
         refinements += _refined(one, f"building.refine[{i}]", building, maker)
     for route in draft.file.items("route"):
-        line, on = np.array(route.path, dtype=float), route.on or default
-        if section.size_at_routes is not None:
-            refinements.append(
-                Refinement(line=line, size=section.size_at_routes, reach=1.5, sheet=on)
-            )
-        if section.edges_along_routes and on is not None:
-            guides.setdefault(on, []).append(line)
+        for line, on in _ways_of(route, default):
+            if section.size_at_routes is not None:
+                refinements.append(
+                    Refinement(line=line, size=section.size_at_routes, reach=1.5, sheet=on)
+                )
+            if section.edges_along_routes and on is not None:
+                guides.setdefault(on, []).append(line)
     for point in draft.file.items("point"):
         place, on = np.array([point.at], dtype=float), point.on or default
         if section.size_at_points is not None:

@@ -11,11 +11,14 @@ import numpy as np
 from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from trundle._typing import Array
 from trundle.errors import Problem
 from trundle.road import RoadClass
 from trundle.route import ConstantSpeed, Route, SpeedLaw, SpeedOverTime, Steering, wheel_places
 from trundle.simulate import Crossing
-from trundle.structure import FloorPlan, Surface
+from trundle.simulate.sources.passage import Passage
+from trundle.simulate.wheels.surfaces import tracks_on
+from trundle.structure import FloorPlan, Structure, Surface
 from trundle.study.model import Extent
 from trundle.study.plans import Case, Drive, MethodPlan
 from trundle.study_file.attempt import attempted
@@ -65,7 +68,7 @@ class RouteSection(Section):
     vehicle: Name
     path: Annotated[tuple[Place, ...], Field(min_length=2)] = _NOWHERE
     drawn: Line | None = None
-    on: Name | None = None
+    on: Name | tuple[Name, ...] | None = None
     speed: Speed | None = None
     speeds: _OverStations | None = None
     speeds_over_time: _OverTime | None = None
@@ -85,6 +88,9 @@ class RouteSection(Section):
         elif len(given) != 1:
             rule = "a route has one of speed, speeds (over stations) and speeds_over_time; got "
             rule += " and ".join(given) or "none"
+        elif isinstance(self.on, tuple) and len(self.on) != len(self.path) - 1:
+            rule = f"a path of {len(self.path)} points has {len(self.path) - 1} legs: name the "
+            rule += "surface of each, or one for all"
         elif self.waits and self.speeds is None:
             rule = "waits are of stops among speeds over stations: leave them out"
         elif self.reverse and self.steering == "tractrix":
@@ -92,6 +98,18 @@ class RouteSection(Section):
         if rule:
             raise PydanticCustomError("rule", "{rule}", {"rule": rule})
         return self
+
+    @property
+    def through(self) -> tuple[str, ...]:
+        """Surface of every leg, if there are several."""
+        return self.on if isinstance(self.on, tuple) and len(set(self.on)) > 1 else ()
+
+    @property
+    def only(self) -> str | None:
+        """The surface of all legs, if they have one."""
+        if isinstance(self.on, tuple):
+            return None if self.through else self.on[0]
+        return self.on
 
     @property
     def law(self) -> SpeedLaw:
@@ -127,9 +145,10 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
             if section.vehicle not in known:
                 found.append(unknown(f"{place}.vehicle", section.vehicle, sorted(known), "vehicle"))
             continue
-        surface, _ = surface_at(draft, f"{place}.on", section.on)
-        path = np.array(section.path)
-        path = path if surface is None else surface.frame.from_plan(path)
+        path, through = np.array(section.path), section.through
+        if not through:
+            surface, _ = surface_at(draft, f"{place}.on", section.only)
+            path = path if surface is None else surface.frame.from_plan(path)
         law, mistakes = attempted(f"{place}.speeds", lambda s=section: s.law)
         found += mistakes
         if law is None:
@@ -139,7 +158,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         route, mistakes = attempted(
             f"{place}.path",
             lambda s=section, p=path, law=law, how=steering: Route(
-                points=p, law=law, name=s.name, on=s.on,
+                points=p, law=law, name=s.name, on=s.only, surfaces=s.through,
                 radius=s.radius, lane=s.lane, steering=how, reverse=s.reverse,
             ),
         )  # fmt: skip
@@ -209,24 +228,32 @@ def _off_the_floor(draft: Draft, extent: Extent) -> Iterator[Problem]:
 def _off_slabs(draft: Draft) -> Iterator[Problem]:
     """Give routes on no storey, and routes that leave its slabs: over an opening, past an edge."""
     for i, section in draft.file.lists.get("route", []):
-        surface, mistakes = surface_at(draft, f"route[{i + 1}].on", section.on)
-        yield from mistakes
-        if surface is None or draft.extent is None:
-            continue
-        if any(is_off(draft.extent, place) for place in section.path):
+        legs = list(pairwise(np.array(section.path)))
+        names = section.through or (section.only,) * len(legs)
+        surfaces: dict[str | None, Surface | None] = {}
+        for name in dict.fromkeys(names):
+            surfaces[name], mistakes = surface_at(draft, f"route[{i + 1}].on", name)
+            yield from mistakes
+        if draft.extent is None or any(is_off(draft.extent, place) for place in section.path):
             continue  # told already
-        for j, (start, end) in enumerate(pairwise(np.array(section.path)), start=1):
-            n = max(2, int(np.ceil(np.hypot(*(end - start)) / _LOOKED_AT)) + 1)
-            places = start + np.linspace(0.0, 1.0, n)[:, None] * (end - start)
-            off = places[~surface.holds(surface.frame.from_plan(places))]
-            if len(off):
-                (a, b), (c, d) = off[0], off[-1]
-                yield Problem(
-                    place=f"route[{i + 1}].path[{j}]",
-                    value=f"a way over no slab from ({a:.4g}, {b:.4g}) to ({c:.4g}, {d:.4g}) m",
-                    rule=f"a route must stay on the slabs of {surface.name!r}",
-                    remedy="lead it round openings and walls; 'trundle check' draws the plan",
-                )
+        for j, ((start, end), name) in enumerate(zip(legs, names, strict=True), start=1):
+            surface = surfaces[name]
+            if surface is not None:
+                yield from _leg_off(f"route[{i + 1}].path[{j}]", start, end, surface)
+
+
+def _leg_off(place: str, start: Array, end: Array, surface: Surface) -> Iterator[Problem]:
+    n = max(2, int(np.ceil(np.hypot(*(end - start)) / _LOOKED_AT)) + 1)
+    places = start + np.linspace(0.0, 1.0, n)[:, None] * (end - start)
+    off = places[~surface.holds(surface.frame.from_plan(places))]
+    if len(off):
+        (a, b), (c, d) = off[0], off[-1]
+        yield Problem(
+            place=place,
+            value=f"a way over no slab from ({a:.4g}, {b:.4g}) to ({c:.4g}, {d:.4g}) m",
+            rule=f"a route must stay on the slabs of {surface.name!r}",
+            remedy="lead it round openings and walls; 'trundle check' draws the plan",
+        )
 
 
 def _wheels_off(draft: Draft) -> Iterator[Problem]:
@@ -244,9 +271,11 @@ def _wheels_off(draft: Draft) -> Iterator[Problem]:
             ),
         )
         yield from mistakes
-        surface, _ = surface_at(draft, place, section.on)
-        if crossing is not None:
+        if crossing is not None and not section.through:
+            surface, _ = surface_at(draft, place, section.only)
             yield from _aside(draft, place, crossing, surface)
+        elif crossing is not None and draft.model is not None:
+            yield from _aside_through(draft.model, place, crossing)
 
 
 def _aside(
@@ -279,6 +308,25 @@ def _aside(
                 value=f"{name} at ({x:.4g}, {y:.4g}) m",
                 rule="every wheel must stay on the slabs, those beside the path and behind it too",
                 remedy="lead the path further from edges and openings, or round corners wider",
+            )
+            return
+
+
+def _aside_through(model: Structure, place: str, crossing: Crossing) -> Iterator[Problem]:
+    """Give the first wheel that stands on no slab of a way through several surfaces."""
+    track = Passage(crossing=crossing).swept()
+    for part in tracks_on(model, track) if all(n in model.surfaces for n in track.surfaces) else ():
+        at = part.there & (track.share.ravel() != 0.0)
+        off = np.flatnonzero(at)[~model.surface(part.on).holds(part.place[at])]
+        if len(off):
+            x, y = track.place.reshape(-1, 2)[off[0]]
+            name = crossing.vehicle.contact_names[off[0] % track.share.shape[1]]
+            yield Problem(
+                place=f"{place}.path",
+                value=f"{name} at ({x:.4g}, {y:.4g}) m",
+                rule=f"every wheel must stay on the slabs, here those of {part.on!r}",
+                remedy="let the way come onto another surface where the two meet, and lead it "
+                "further from edges",
             )
             return
 

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies import GOOD
+from studies import GOOD, LIBRARY
 from trundle.errors import FitnessWarning, InputError
 from trundle.mitigate.changes import Change, each_change, every_combination
 from trundle.mitigate.mitigation import resonance_speeds, try_changes
 from trundle.results.parts import ChangesPart
+from trundle.road import ExpansionJoint, Feature, FeaturedRoad, RoadClass
 from trundle.run.checkpoint import InMemory, unfinished_of
 from trundle.run.dask_cluster import local_cluster
 from trundle.run.threads import Threads
@@ -264,3 +265,46 @@ def test_nothing_to_try_is_refused(tmp_path, nothing):
     asked = {"changes": [Change()], "speeds": (15 * KMH,), "roads": ("B",), "runs": 2} | nothing
     with pytest.raises(InputError, match="at least one"):
         try_changes(study_of(tmp_path), **asked)
+
+
+JOINT = """
+[[feature]]
+kind = "joint"
+at = "3 m"
+step = "4 mm"
+"""
+
+
+def test_joints_stay_when_road_classes_are_compared(tmp_path):
+    """On the study's own class and speed a joint is felt as in the study itself: the same level."""
+    text = TEXT.replace(LIBRARY, LIBRARY + '\ncontact_patch = "0.2 m"') + JOINT
+    study = study_of(tmp_path, text)
+    speed = study.drives["main"].route.law.fastest
+    sweep = try_changes(study, changes=[Change()], speeds=[speed], roads=["B"], runs=study.runs)
+    assert outcome(sweep, sweep.outcomes[0].change, speed, "B").margin == pytest.approx(
+        verdict_of(study).margin, rel=1e-9
+    )
+    plain = study_of(tmp_path, TEXT.replace(LIBRARY, LIBRARY + '\ncontact_patch = "0.2 m"'))
+    change = verdict_of(plain).margin / verdict_of(study).margin
+    assert abs(change - 1.0) > 0.02  # without it, it is another level
+
+
+def test_joints_on_some_roads_and_vehicles_that_lift_off_are_refused(tmp_path):
+    """Nothing is compared without a word on what was left out."""
+    study = study_of(tmp_path)
+    feature = Feature(shape=ExpansionJoint(step=0.004), station=3.0)
+    first = next(iter(study.roads))
+    roads = {**study.roads, first: FeaturedRoad(base=study.roads[first], features=(feature,))}
+    roads["plain"] = RoadClass("A")
+    with pytest.raises(InputError, match="on some of its roads alone"):
+        try_changes(
+            replace(study, roads=roads), changes=[Change()], speeds=[3.0], roads=["A"], runs=2
+        )
+    drives = {
+        name: replace(drive, vehicle=replace(drive.vehicle, lifts_off=True))
+        for name, drive in study.drives.items()
+    }
+    with pytest.raises(InputError, match="run on each road by itself"):
+        try_changes(
+            replace(study, drives=drives), changes=[Change()], speeds=[3.0], roads=["A"], runs=2
+        )

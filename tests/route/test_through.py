@@ -10,7 +10,7 @@ from trundle.dynamics import ModalRatio
 from trundle.errors import InputError, StudyError
 from trundle.road import RoadClass
 from trundle.route import ConstantSpeed, Route
-from trundle.simulate import Coupled, Crossing, Decoupled, Modal, ensemble
+from trundle.simulate import Coupled, Crossing, Decoupled, Modal, ensemble, lay_out, prepare
 from trundle.simulate.sources.passage import Passage
 from trundle.simulate.wheels.surfaces import tracks_on
 from trundle.structure import CONCRETE, Floor, Frame, ShellGroup, ShellSection, Spot, Surface
@@ -85,6 +85,15 @@ def test_on_a_ramp_wheels_move_along_the_slope():
     climbed = far.place[far.there]
     np.testing.assert_allclose(climbed[:, 0], (plan[:, 0] - 6.0) * np.hypot(1.0, SLOPE), atol=1e-9)
     method = Coupled(integration=Modal(f_max=60.0, dt=0.005), damping=ModalRatio(ratio=0.03))
+    prepared = prepare(floor, method.integration, method.damping)
+    layout = lay_out(
+        prepared, passage.crossing, method=method, points={"a": Spot(4.0, 2.0, "near")}
+    )
+    _, speed = layout.rows.window(0, layout.rows.n_steps)
+    front = passage.crossing.along(layout.time, -3.0).station[:, 0]
+    level, up = (front > 1.0) & (front < 5.9), (front > 6.1) & (front < 11.0)
+    np.testing.assert_allclose(speed[level, 0], 3.0)
+    np.testing.assert_allclose(speed[up, 0], 3.0 * np.hypot(1.0, SLOPE), rtol=1e-12)
     runs = ensemble(
         floor, passage.crossing, method=method, n_runs=1, seed=1,
         points={"a": Spot(4.0, 2.0, "near"), "b": Spot(2.0, 2.0, "far")},

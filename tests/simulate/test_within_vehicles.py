@@ -17,8 +17,11 @@ from trundle.simulate import (
     Modal,
     contact_forces,
     ensemble,
+    lay_out,
     point_load_deflection,
+    prepare,
 )
+from trundle.simulate.sources.passage import Passage
 from trundle.vehicle import (
     GRAVITY,
     Axle,
@@ -211,6 +214,34 @@ def test_a_vehicle_driving_backwards_is_its_mirror_image():
     _, found, _ = forces_of(van().build(), back, RoadClass("C"))
     _, expected, _ = forces_of(turned.build(), route, RoadClass("C"))
     np.testing.assert_allclose(found[0][:, ::-1], expected[0], rtol=1e-8)
+
+
+def test_wheels_are_as_fast_as_their_places_move():
+    """Round a bend, pulled and on the path: |dx/dt| of every wheel, by differences."""
+    law = SpeedOverTime(time=np.array([0.0, 2.0, 6.0]), value=np.array([2.0, 2.0, 1.0]))
+    points = np.array([[0.0, 0.0], [15.0, 0.0], [15.0, 20.0]])
+    wide = describe("van_vw_vanagon").widened(1.5).build()
+    for steering in ("path", "tractrix"):
+        route = Route(points=points, law=law, radius=5.0, steering=steering)
+        passage = Passage(crossing=Crossing(wide, route, SMOOTH, run_in=0.0))
+        time, h = np.linspace(4.003, 12.0, 321), 1e-5
+        ahead, back = (passage.track(time + x, 0.0).place for x in (h, -h))
+        moved = np.linalg.norm(ahead - back, axis=2) / (2 * h)
+        np.testing.assert_allclose(passage.track(time, 0.0).speed, moved, atol=1e-4)
+
+
+def test_an_inner_force_is_felt_through_the_wheels_alone():
+    """What the floor does under an engine is what it does under the wheels' forces, and no more."""
+    floor = small_floor()
+    shaken = van(forces=(BodyForce(amplitude=200.0, frequency=6.0, setback=1.5),)).build()
+    crossing = Crossing(shaken, Route.straight((0, Y), (12, Y), speed=3.0), SMOOTH)
+    method = Decoupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.05))
+    prepared = prepare(floor, method.integration, method.damping)
+    layout = lay_out(prepared, crossing, method=method, points={"a": MID}, duration=9.0)
+    rows, _ = layout.rows.window(0, layout.rows.n_steps)
+    weights = np.abs(rows.value).reshape(layout.rows.n_steps, 3, -1).sum(axis=2)
+    assert weights[:, 2].max() == 0.0
+    assert weights[:, :2].max() > 0.5
 
 
 def test_wheels_beside_a_sharp_corner_are_refused():

@@ -1,6 +1,7 @@
 """Roads of a study: classes, flatness, surveys in their own chainage, and what lies on them."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -156,6 +157,28 @@ def test_a_survey_that_does_not_reach_is_refused_with_the_missing_stretch(tmp_pa
     )  # what it offers is enough
     short = mistakes('[[road]]\nfile = "road.csv"\nfrom = "545 m"\n', tmp_path)
     assert "557.93 to 571.47 m missing" in short or "to 571.47 m missing" in short
+
+
+def test_belgian_blocks_are_driven_over_on_five_cuts(tmp_path):
+    """Ten measured metres, mirrored: left and right wheels on cuts of their own, and they roll."""
+    blocks = Path(__file__).resolve().parents[3] / "shared" / "data" / "belgian_block.csv"
+    if not blocks.exists():
+        pytest.skip("no measured road at hand")
+    (tmp_path / "blocks.csv").write_bytes(blocks.read_bytes())
+    made = study(
+        '[[road]]\nfile = "blocks.csv"\nbeyond = "mirror"\n', tmp_path,
+        kind=('kind = "van_vw_vanagon"', 'kind = "van_vw_vanagon"\ntrack_width = "1.5 m"'),
+        slow=('"10 km/h"', '"5 km/h"'),
+    )  # fmt: skip
+    left, right = (made.roads["blocks"].under(y, Tread()) for y in (0.75, -0.75))
+    assert left is made.roads["blocks"].tracks[3]  # at v = 0.94 m
+    assert right is made.roads["blocks"].tracks[1]  # at v = -0.60 m
+    (cell,) = run_study(made).cells.values()
+    forces = cell.history.contact_forces[:600]
+    # blocks of 2 cm in height press hard at a walking pace, and not alike on both sides
+    assert forces.std(axis=0).min() > 0.02 * forces.mean()
+    sides = np.corrcoef(forces[:, 0] - forces[:, 0].mean(), forces[:, 1] - forces[:, 1].mean())
+    assert abs(sides[0, 1]) < 0.9
 
 
 FEATURES = """

@@ -137,6 +137,15 @@ def test_a_vehicle_that_lifts_off_is_run_by_newmark_and_says_so():
     for cell in result.cells.values():
         assert cell.exact is None
         assert any("not linear" in one.message for one in cell.warnings)
+    # B is what it is by itself, and no multiple of A
+    alone = run_study(
+        study_from_text(text.replace('class = "A"\n[[road]]\n', "") + lifting + ROUTE + newmark)
+    )
+    ours, theirs = (
+        next(cell for key, cell in one.cells.items() if key.road == "B").rms_velocity
+        for one in (result, alone)
+    )
+    np.testing.assert_array_equal(ours, theirs)
 
 
 def test_routes_have_arcs_lanes_and_stops():

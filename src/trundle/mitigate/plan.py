@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from trundle._words import in_kmh
+from trundle.errors import InputError
 from trundle.mitigate.changes import Change, changed_study
 from trundle.mitigate.tasks import ChangesTask
-from trundle.road import RoadClass
+from trundle.road import Feature, FeaturedRoad, Road, RoadClass
 from trundle.run.jobs import Job, plan_jobs
 from trundle.study.model import Study
 from trundle.study.plans import Assessment, Case, MethodPlan
@@ -83,7 +84,12 @@ def plan_changes(
     runs : int
         Runs of each combination.
     """
-    classes = {name: RoadClass(name) for name in roads}  # pyright: ignore[reportArgumentType] - checked
+    _check_vehicles(study)
+    features = _features_of_all(study)
+    classes: dict[str, Road] = {}
+    for name in roads:
+        bare = RoadClass(name)  # pyright: ignore[reportArgumentType] - checked
+        classes[name] = FeaturedRoad(base=bare, features=features) if features else bare
     found: list[Combination] = []
     for i, together in enumerate(sharing_runs(changes)):
         rest = replace(together[0], slab_thickness=None, isolation=None)
@@ -96,6 +102,33 @@ def plan_changes(
             job = replace(job, name=f"change{i}-speed{j}-case{k}", n_waves=0)
             found.append(Combination(changes=tuple(together), case=case, speed=speed, job=job))
     return tuple(found)
+
+
+def _check_vehicles(study: Study) -> None:
+    """Refuse vehicles whose response on another road does not follow from that on one."""
+    for name, drive in study.drives.items():
+        if not drive.vehicle.is_linear:
+            raise InputError(
+                f"route {name!r}: a vehicle that is not linear (friction, stops, lifting off) is "
+                "run on each road by itself; compare changes of it by studies of their own"
+            )
+
+
+def _features_of_all(study: Study) -> tuple[Feature, ...]:
+    """Return the joints and humps that lie on all roads of a study, to lie on every class.
+
+    Raises
+    ------
+    InputError
+        Roads with different ones.
+    """
+    each = [one.features if isinstance(one, FeaturedRoad) else () for one in study.roads.values()]
+    if any(one != each[0] for one in each):
+        raise InputError(
+            "changes are compared on road classes, and the features of this study lie on some of "
+            "its roads alone: give every road the same, or remove them"
+        )
+    return each[0]
 
 
 def sharing_runs(changes: Sequence[Change]) -> list[list[Change]]:

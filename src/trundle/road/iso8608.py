@@ -142,7 +142,7 @@ class RoadClass(_Random):
 
     def displacement_psd(self, n: ArrayLike) -> Float[Array, ...]:
         """Return the one-sided PSD Gd [m3] at spatial frequency n [cycle/m]."""
-        return self.roughness * (np.asarray(n, float) / REFERENCE_FREQUENCY) ** -self.waviness
+        return _line(self, n)
 
     def displacement_psd_angular(self, angular: ArrayLike) -> Float[Array, ...]:
         """Return the one-sided PSD Gd [m3/rad] at angular spatial frequency Omega [rad/m].
@@ -193,12 +193,16 @@ class RoadSpectrum(_Random):
 
     def displacement_psd(self, n: ArrayLike) -> Float[Array, ...]:
         """Return the one-sided PSD Gd [m3] at spatial frequency n [cycle/m]."""
-        return self.roughness * (np.asarray(n, float) / REFERENCE_FREQUENCY) ** -self.waviness
+        return _line(self, n)
 
     def __str__(self) -> str:
         """Describe the roughness for a report."""
         exponent = "" if self.waviness == 2.0 else f", w = {self.waviness:.3g}"
         return f"{self.name} (Gd(n0) = {1e6 * self.roughness:.3g}e-6 m3{exponent})"
+
+
+def _line(road: Spectrum, n: ArrayLike) -> Float[Array, ...]:
+    return road.roughness * (np.asarray(n, float) / REFERENCE_FREQUENCY) ** -road.waviness
 
 
 def band_power(

@@ -15,6 +15,7 @@ from matplotlib.tri import Triangulation
 from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
+from trundle.report.figures.wheel_tracks import draw_wheel_tracks
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure.building import Building, Column, Slab, Wall
@@ -73,6 +74,7 @@ def storey_figure(study: Study, building: Building, name: str) -> Figure:
     for i, (route, drive) in enumerate(study.drives.items()):
         line = study.way_in_plan(drive.route, name)
         if len(line):
+            draw_wheel_tracks(axes, study, drive, COLOURS[i % 6], on=name)
             draw_route(axes, line, f"{route}, {in_kmh(drive.route.law.fastest)}", i)
     for point, spot in study.points.items():
         if spot.on in (name, None):

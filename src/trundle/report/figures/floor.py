@@ -15,6 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
+from trundle.report.figures.wheel_tracks import draw_wheel_tracks
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure import FloorPlan, Structure
@@ -85,8 +86,9 @@ def plan_figure(study: Study, plan: FloorPlan) -> Figure:
     (x0, x1), (y0, y1) = study.extent
     figure, (axes,) = new_figure(5.6, 1.2 + 5.0 * (y1 - y0) / (x1 - x0))
     _draw_beams(axes, plan)
-    for i, (name, route) in enumerate((n, d.route) for n, d in study.drives.items()):
-        colour = COLOURS[i % 6]
+    for i, (name, drive) in enumerate(study.drives.items()):
+        route, colour = drive.route, COLOURS[i % 6]
+        draw_wheel_tracks(axes, study, drive, colour)
         axes.plot(*route.line.T, color=colour, linewidth=2.0)
         axes.annotate(
             "",

@@ -11,7 +11,16 @@ from typing import Any
 from trundle._progress import Tell, silent
 from trundle.errors import InputError
 from trundle.report.canvas import Drawing, class_colours
-from trundle.report.figures import building, floor, map, model, response, road, vehicle
+from trundle.report.figures import (
+    building,
+    floor,
+    given_road,
+    map,
+    model,
+    response,
+    road,
+    vehicle,
+)
 from trundle.report.html import Picture, embedded, template
 from trundle.report.interactive import plotly_script
 from trundle.results.mesh_change import mesh_words
@@ -28,7 +37,16 @@ from trundle.views.words import road_words
 __all__ = ["unused_numbers", "write_report"]
 
 _TABLES = ("classes", "printed", "printed_bound")  # that bear numbers beside the figures
-_FILES = (building, model, floor, road, vehicle, response, map)  # in the order of the page
+_FILES = (
+    building,
+    model,
+    floor,
+    road,
+    given_road,
+    vehicle,
+    response,
+    map,
+)  # in the order of the page
 
 
 def write_report(result: StudyResult, folder: Path, *, tell: Tell | None = None) -> Path:

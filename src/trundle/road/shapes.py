@@ -1,7 +1,6 @@
 """What discontinuities look like along a road: one class a kind.
 
-Lengths are along the road [m], heights up positive [m]. Walls are drawn over a chamfer of 2 mm; a
-contact patch is a hundred times as long.
+Lengths are along the road [m], heights up positive [m]; walls are drawn over a chamfer of 2 mm.
 """
 
 from __future__ import annotations

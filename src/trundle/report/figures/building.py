@@ -15,13 +15,13 @@ from matplotlib.tri import Triangulation
 from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
-from trundle.report.figures.wheel_tracks import draw_wheel_tracks
+from trundle.report.figures.routes import draw_route, draw_wheel_tracks
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure.building import Building, Column, Slab, Wall
 from trundle.study.model import Study
 
-__all__ = ["draw_route", "drawings", "storey_modes_figure"]
+__all__ = ["drawings", "storey_modes_figure"]
 
 _SLAB, _PANEL, _BEAM, _WALL, _COLUMN = "#E8E8E8", "#CFCFCF", "#9A9A9A", "#5A5A5A", "#222222"
 _MODES = 4  # drawn side by side
@@ -212,29 +212,6 @@ def _draw_grid(axes: Axes, building: Building, low: Array, high: Array) -> None:
                 fontsize=7,
                 rotation=turn,
             )
-
-
-def draw_route(axes: Axes, line: Array, name: str, i: int) -> None:
-    """Draw a route in plan with an arrow at its end, and its name along its longest leg."""
-    colour = COLOURS[i % 6]
-    axes.plot(*line.T, color=colour, linewidth=2.0, zorder=4)
-    look = {"arrowstyle": "-|>", "color": colour, "linewidth": 2.0}
-    axes.annotate("", line[-1], xytext=line[-2], arrowprops=look, zorder=4)
-    lengths = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    leg = int(lengths.argmax())
-    along = line[leg + 1] - line[leg]
-    angle = np.degrees(np.arctan2(along[1], along[0]))
-    axes.annotate(
-        name,
-        line[leg] + 0.6 * along,
-        rotation=angle if -90.0 < angle <= 90.0 else angle + 180.0,
-        rotation_mode="anchor",
-        ha="center",
-        va="bottom",
-        color=colour,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
-        zorder=5,
-    )
 
 
 def _draw_north(axes: Axes, north: float) -> None:

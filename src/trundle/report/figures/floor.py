@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection
 from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
-from trundle.report.figures.wheel_tracks import draw_wheel_tracks
+from trundle.report.figures.routes import draw_wheel_tracks
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure import FloorPlan, Structure

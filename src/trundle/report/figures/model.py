@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.report.canvas import Drawing, new_figure
-from trundle.report.figures.building import draw_route, storey_modes_figure
+from trundle.report.figures.building import storey_modes_figure
+from trundle.report.figures.routes import draw_route
 from trundle.results.study_result import StudyResult
 from trundle.structure import Surface
 from trundle.study.model import Study

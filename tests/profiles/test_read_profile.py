@@ -134,8 +134,8 @@ def test_erd_files_are_read(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("      6,", "      7,", "says 7 samples of 2 channels on line 2 and holds 12 numbers"),
-        (" 0.0 0.0\n", " 0.0\n", "cut short"),
+        ("      6,", "      7,", "says 7 samples of 2 channels on line 2 and holds 6"),
+        (" 0.0 0.0\n", " 0.0\n", "line 16 holds 1 numbers, and line 2 says 2 channels"),
         ("  5,  ", "  1,  ", "are binary .kind 1 on line 2"),
         ("END\n", "", "no line END"),
         (" 2.0 0.5", " 2.0 x.5", "line 13 must be a number; got 'x.5'"),
@@ -143,6 +143,12 @@ def test_erd_files_are_read(tmp_path):
         ("UNITSNAMmm      mm", "UNITSNAMcounts  cts", "'cts', is no length"),
         ("0.25,", "0,", "step on line 2 must be above 0"),
         ("      2,      6", "     x2,      6", "line 2 must hold the numbers"),
+        ("      2,      6", "      1,      6", "line 11 holds 2 numbers, and line 2 says 1"),
+        ("      6,", "      4,", "says 4 samples of 2 channels on line 2 and holds 6"),
+        (" 1.5 1.0", " 1,5 1,0", "decimal commas"),
+        ("0.25,", "1e308,", "step on line 2 must be above 0"),
+        ("XUNITS  m", "XSTART  inf\nXUNITS  m", "XSTART must be a number"),
+        (" 2.0 0.5", " nan 0.5", "line 13 must be a number"),
     ],
 )
 def test_damaged_erd_files_are_refused_with_their_line(tmp_path, old, new, words):
@@ -173,6 +179,10 @@ def test_opencrg_files_are_read(tmp_path):
         (crg().replace("  0.004878", "      ****", 1), "heights are missing"),
         (crg().replace("long section 1,m", "long section 1,mm"), "cannot be read"),
         (CRG_HEAD, "cut short|cannot be read"),
+        (crg().replace("v_increment = 0.5", "v_increment = 0.25"), "its 5 cuts lie from -1 to 0 m"),
+        (crg().replace("v_right     = -1.0", "v_right     = 1.0"), "which is wrong"),
+        (crg().replace("v_right     = -1.0", "v_right     = abc"), "must be a number; got 'abc'"),
+        (crg().replace("end_u     = 1.9", "end_u     = nan"), "must be a number; got 'nan'"),
     ],
 )  # fmt: skip
 def test_damaged_opencrg_files_are_refused(tmp_path, text, words):
@@ -196,6 +206,13 @@ def test_damaged_opencrg_files_are_refused(tmp_path, text, words):
         ("station [m],h [kg]\n0,1\n1,2\n2,3\n3,1\n", "'kg', is no length"),
         ("station [m],a [mm],b [mm]\n0,1,1\n1,2,1\n2,3,2\n3,1,3\n", "2 tracks .a, b. and does not say"),
         (table("s [m],h [m]", map(",".join, zip(RISING, SAW, strict=True))), "in mm"),
+        ("station [m],h [mm]\n0,\n1,2\n2,3\n3,1\n4,1\n5,1\n", "line 2 must|one column"),
+        ("station [m],h [mm]\n0,abc\n1,2\n2,3\n3,1\n4,1\n5,1\n", "line 2 must hold numbers"),
+        ("station [m];h [mm]\n0;1\n1;2\n;3\n3;1\n4;1\n5;1\n", "line 4 must hold numbers"),
+        ("station [m],h [mm]\n0,1\n1,2\n# 2,3\n3,1\n4,1\n5,1\n", "line 4 must hold numbers"),
+        ("station [m],h [mm]\n0,1\n1,2\n2,3\n3,1\n" + "n/a,n/a\n" * 9, "line 9 must hold numbers"),
+        ("station [m],h [mm]\n0,1\n1,2\n2,3\n3,1\n30,1\n31,1\n", "line 6: nothing from station 3"),
+        ("station [m],left v = 0.6 m\n0,1\n1,2\n2,3\n3,1\n", "unit of its heights"),
         (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0", "is not text"),
         ("", "no samples"),
     ],
@@ -225,3 +242,20 @@ def test_the_measured_roads_at_hand():
     assert all(len(one.station) == 1001 and one.length == 10.0 for one in blocks.tracks)
     with pytest.raises(InputError, match="unit of its stations"):
         read_profile(DATA / "sorel_profile_1.txt")
+
+
+def test_the_place_of_a_track_is_no_unit_of_its_heights(tmp_path):
+    """Places in m, cm or mm, before or behind the unit of the heights, which is mm."""
+    rows = map(",".join, zip(RISING, SAW, SAW, strict=True))
+    heading = "station [m],left height mm v = 600 mm,right height [mm] V = -6e-1 m"
+    road = read_profile(kept(tmp_path, table(heading, rows)), ProfileOptions(detrend=False)).road
+    np.testing.assert_allclose(road.lateral, [-0.6, 0.6])
+    assert road.tracks[0].elevation.max() == pytest.approx(4e-3)
+
+
+def test_modifiers_of_a_grid_are_told(tmp_path):
+    """They are not applied: who reads it must know."""
+    pytest.importorskip("pyopencrg")
+    text = crg().replace("$KD_DEFINITION", "$ROAD_CRG_MODS\nscale_z_grid = 1000\n$\n$KD_DEFINITION")
+    read = read_profile(kept(tmp_path, text, "road.crg"), ProfileOptions(detrend=False))
+    assert "modifiers" in read.told[0]

@@ -40,7 +40,7 @@ def hump(height=0.08, length=1.2):
     return FeaturedRoad(base=Profile.smooth(), features=(feature,))
 
 
-def driven(vehicle, road, integration=STEP, duration=4.0):
+def driven(vehicle, road, integration=STEP, duration=2.5):
     crossing = Crossing(vehicle, Route.straight((0, 0), (30, 0), speed=SPEED), road, run_in=1.0)
     time, forces = contact_forces(
         crossing, integration=integration, n_runs=1, seed=1, duration=duration
@@ -50,11 +50,12 @@ def driven(vehicle, road, integration=STEP, duration=4.0):
 
 def own(time, road, force_on_body, *, lifts, memory=0):
     """Integrate the two masses with a law between them: (z, zw, vz, vw, whatever it remembers)."""
-    ground = road.under(0.0, Tread()).averaged(PATCH)
+    stations = np.linspace(0.0, 30.0, 60001)
+    heights, slopes = road.under(0.0, Tread()).averaged(PATCH).at(stations)
     weight = (M + MU) * GRAVITY
 
     def tyre(t, y):
-        z, g = (float(v) for v in ground.at(min(SPEED * t, 29.0)))
+        z, g = (np.interp(SPEED * t, stations, values) for values in (heights, slopes))
         force = weight + KT * (z - y[1]) + CT * (SPEED * g - y[3])
         return max(force, 0.0) if lifts else force
 
@@ -64,7 +65,7 @@ def own(time, road, force_on_body, *, lifts, memory=0):
         return [y[2], y[3], spring / M, (tyre(t, y) - weight - spring) / MU, *change]
 
     found = integrate.solve_ivp(
-        rate, (0.0, time[-1]), np.zeros(4 + memory), t_eval=time, max_step=2e-4, rtol=1e-8,
+        rate, (0.0, time[-1]), np.zeros(4 + memory), t_eval=time, max_step=5e-4, rtol=1e-8,
         atol=1e-10,
     )  # fmt: skip
     return np.array([tyre(t, y) for t, y in zip(time, found.y.T, strict=True)]), found.y

@@ -270,6 +270,31 @@ def test_what_cannot_be_is_refused(make, words):
         make()
 
 
+def test_an_axle_out_of_round_is_both_its_wheels():
+    """Axle 2 of a vehicle on four wheels, and no other; one that is not there is refused."""
+    wide = van(rounds=(OutOfRound(amplitude=1e-3, radius=0.35, axle=1),)).widened(1.5)
+    _, forces, _ = forces_of(wide.build(), Route.straight((0, 0), (60, 0), speed=5.0), run_in=9.0)
+    shaken = forces[0].std(axis=0)
+    np.testing.assert_allclose(shaken[2], shaken[3], rtol=1e-6)
+    assert shaken[2] > 1.5 * shaken[0]
+    with pytest.raises(InputError, match="has no axle 3 to be out of round"):
+        van(rounds=(OutOfRound(amplitude=1e-3, radius=0.35, axle=2),)).build()
+
+
+def test_what_shakes_faster_than_a_step_shows_is_refused():
+    """At 199 Hz steps of 5 ms would show 1 Hz; with the step that would show it."""
+    floor, method = small_floor(), Decoupled(integration=Modal(f_max=60.0, dt=0.005))
+    for extra in (
+        {"forces": (BodyForce(amplitude=9.0, frequency=199.0),)},
+        {"rounds": (OutOfRound(amplitude=1e-3, radius=0.05, order=100),)},
+    ):
+        crossing = Crossing(
+            van(**extra).build(), Route.straight((0, Y), (12, Y), speed=4.0), SMOOTH
+        )
+        with pytest.raises(InputError, match="80 Hz at most: shorten dt to"):
+            ensemble(floor, crossing, method=method, points={"a": MID}, n_runs=1, seed=1)
+
+
 def test_lifting_off_is_told_of_wheels_alone():
     """An engine's force is negative half of the time, and lifts nothing off the ground."""
     floor = small_floor()
@@ -278,7 +303,7 @@ def test_lifting_off_is_told_of_wheels_alone():
     method = Decoupled(integration=Modal(f_max=90.0, dt=0.005), damping=ModalRatio(ratio=0.05))
     runs = ensemble(floor, crossing, method=method, points={"a": MID}, n_runs=1, seed=1)
     assert not any("pull on the floor" in one.message for one in runs.warnings)
-    assert runs.contact_names == ("axle 1", "axle 2", "engine")
+    assert runs.contact_names == ("axle 1", "axle 2", "engine, inside")
     assert runs.contact_forces[0, :, 2].max() == 0.0
     assert runs.velocity[0].std() > 0.0
     assert vehicle.total_mass == pytest.approx(2000.0)

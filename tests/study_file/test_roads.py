@@ -275,6 +275,14 @@ step = "5 mm"
          'height = "1 cm"\nroute = "other"\n', "must be the name of a route"),
         ('[[road]]\nsmooth = true\n[[feature]]\nkind = "bump"\nat = "4 m"\nlength = "1 m"\n'
          'height = "1 cm"\nroads = ["B"]\n', "must be the name of a road"),
+        ('[[road]]\nsmooth = true\n[[feature]]\nkind = "joint"\ngap = "2 mm"\n'
+         'line = [["6 m", "0 m"], ["8 m", "10 m"]]\n', "4 mm to 0.5 m"),
+        ('[[road]]\nsmooth = true\n[[feature]]\nkind = "joint"\ngap = "20 mm"\n'
+         'line = [["0 m", "4.99 m"], ["24 m", "5.01 m"]]\n', "within 80 degrees"),
+        ('[[road]]\nsmooth = true\n[[feature]]\nkind = "ramp_kink"\nat = "4 m"\n'
+         'grade = "5 deg"\nlength = "2 m"\n', r"feature\[1\].grade"),
+        ('[[road]]\nsmooth = true\n[[feature]]\nkind = "bump"\nat = "-600 m"\nlength = "1 m"\n'
+         'height = "1 cm"\n', "more than 200 m before"),
         ('[[road]]\nsmooth = true\n[[feature]]\nkind = "joint"\nstep = "5 mm"\n'
          'line = [["1 m", "7 m"], ["3 m", "9 m"]]\n', "no route crosses this line"),
     ],

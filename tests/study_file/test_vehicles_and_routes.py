@@ -120,7 +120,13 @@ force = [{ name = "compressor", amplitude = "400 N", frequency = "24 Hz", setbac
     assert vehicle.rounds[0].axle == 0
     assert vehicle.forces[0].during == (1.0, 4.0)
     (cell,) = run_study(made).cells.values()
-    assert cell.contact_names == ("axle 1", "axle 2", "axle 3", "compressor", "braking")
+    assert cell.contact_names == (
+        "axle 1",
+        "axle 2",
+        "axle 3",
+        "compressor, inside",
+        "braking, inside",
+    )
     assert np.isfinite(cell.rms_velocity).all()
 
 
@@ -206,6 +212,18 @@ def test_reversing_and_tables_over_time():
         ({"vehicle": '[vehicle.v]\nkind = "data_sheet"\naxle_loads = ["3.5 ton", "1 t"]\nwheelbase = "2 m"\nbounce = "2 Hz"\n'},
          "a 'ton' is 1000 kg, 907 kg or 1016 kg"),
         ({"vehicle": VAN + 'force = [{ amplitude = "9 N" }]\n'}, "a frequency of its own"),
+        ({"vehicle": VAN + 'force = [{ amplitude = "9 N", frequency = "9 Hz", from_ = "1 s" }]\n'},
+         "did you mean 'from'"),
+        ({"vehicle": VAN + 'force = [{ amplitude = "9 N", frequency = "9 Hz", from = "5 s", to = "1 s" }]\n'},
+         "to a later one"),
+        ({"vehicle": VAN + 'force = [{ amplitude = "9 N", frequency = "900 Hz" }]\n'},
+         r"method\[1\]|80 Hz at most"),
+        ({"vehicle": VAN + 'out_of_round = [{ amplitude = "1 mm", radius = "0.3 m", axle = 3 }]\n'},
+         "no axle 3"),
+        ({"vehicle": '[vehicle.v]\nkind = "data_sheet"\naxle_loads = ["1e12 t", "1 t"]\nwheelbase = "2 m"\nbounce = "2 Hz"\n'},
+         "an axle carries 1 kg to"),
+        ({"route": ROUTE.replace('speed = "10 km/h"', 'speeds = [["0 m", "9 km/h"], ["1 mm", "90 km/h"]]')},
+         "no wheel holds more"),
         ({"vehicle": VAN + 'stop = [{ axle = 3, gap = "9 mm", stiffness = "1 MN/m" }]\n'},
          "axle numbers must be 1 to 2"),
     ],

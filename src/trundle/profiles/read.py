@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,9 +22,14 @@ __all__ = ["ProfileOptions", "ReadProfile", "read_profile"]
 
 _LARGEST = 500_000_000  # bytes
 _FEWEST = 4  # points of a track
+_FARTHEST, _CLOSEST = 1e7, 1e-6  # m, of stations
+_GAP = 5.0  # times the usual distance of points
+_HIGHEST = 1e5  # m
 _STEEPEST = 3.0  # of the slope that every twentieth point exceeds; a worn block pavement has 0.6
-_UNIT_WORDS = {"inch": "in", "inches": "in", "feet": "ft", "metre": "m", "meter": "m",
-               "metres": "m", "meters": "m", "milli-m": "mm"}  # fmt: skip
+_UNIT_WORDS = {
+    "inch": "in", "inches": "in", "feet": "ft", "metre": "m", "meter": "m", "metres": "m",
+    "meters": "m", "millimeters": "mm", "millimetres": "mm", "milli-m": "mm",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +107,7 @@ def read_profile(path: Path, options: ProfileOptions | None = None) -> ReadProfi
     _check_rising(survey, path)
     station = survey.station * _scale("stations", survey.station_unit, chosen.station_unit, path)
     lateral = _places(survey, chosen, path)
+    _check_bounds(station, survey, path)
     order = np.argsort(lateral)
     tracks = tuple(_track(survey, station, int(i), chosen, path) for i in order)
     road = MeasuredRoad(tracks=tracks, lateral=lateral[order], name=path.name)
@@ -139,7 +146,7 @@ def _found(word: str, names: Sequence[str], path: Path) -> int:
     like = like or [i for i, name in enumerate(names) if word.lower() in name.lower()]
     if len(like) == 1:
         return like[0]
-    if word.isdigit() and 1 <= int(word) <= len(names):
+    if word.isascii() and word.isdigit() and 1 <= int(word) <= len(names):
         return int(word) - 1
     what = "is several of its tracks" if like else "is no track of it"
     raise InputError(f"{path}: {word!r} {what}; there are: {', '.join(names)}")
@@ -161,6 +168,30 @@ def _check_rising(survey: Survey, path: Path) -> None:
         )
 
 
+def _check_bounds(station: Array, survey: Survey, path: Path) -> None:
+    """Refuse stations that no road has, and gaps that nobody surveyed.
+
+    Raises
+    ------
+    InputError
+        Stations beyond 10,000 km or closer than a micrometre, or a gap among them.
+    """
+    step = np.diff(station)
+    if not np.all(np.abs(station) < _FARTHEST) or step.min() < _CLOSEST:
+        raise InputError(
+            f"{path}: its stations go from {station[0]:.4g} to {station[-1]:.4g} m, "
+            f"{step.min():.3g} m apart at least: are their unit and step right?"
+        )
+    usual = float(np.median(step))
+    wide = int(np.argmax(step))
+    if step[wide] > _GAP * usual:
+        raise InputError(
+            f"{path}: {survey.where} {survey.lines[wide + 1]}: nothing from station "
+            f"{station[wide]:g} to {station[wide + 1]:g} m, where points are {usual:.3g} m apart "
+            "elsewhere: fill the gap, or split the survey there"
+        )
+
+
 def _scale(what: str, said: str, stated: str, path: Path) -> float:
     """Return a unit of length [m]; one that nobody says is asked for."""
     unit = stated or said
@@ -169,13 +200,13 @@ def _scale(what: str, said: str, stated: str, path: Path) -> float:
         raise InputError(
             f'{path}: does not say the unit of its {what}: state it, {key} = "m" or "mm", say'
         )
-    word = unit.strip()
-    try:
-        return to_si(f"1 {_UNIT_WORDS.get(word.lower(), word)}", "length")
-    except InputError:
-        raise InputError(
-            f"{path}: the unit of its {what}, {word!r}, is no length: write m, mm, in or ft"
-        ) from None
+    word = unit.strip().rstrip(".")
+    for spelled in (word, word.lower()):
+        with suppress(InputError):
+            return to_si(f"1 {_UNIT_WORDS.get(spelled, spelled)}", "length")
+    raise InputError(
+        f"{path}: the unit of its {what}, {word!r}, is no length: write m, mm, in or ft"
+    )
 
 
 def _places(survey: Survey, options: ProfileOptions, path: Path) -> Float[Array, " tracks"]:
@@ -211,6 +242,10 @@ def _track(
     z = survey.elevation[number] * _scale(f"heights ({name})", unit, options.unit, path)
     inside = _stretch(station, options, path)
     s, z = station[inside], z[inside]
+    if not np.all(np.abs(z) < _HIGHEST):
+        raise InputError(
+            f"{path}: a height of {name!r} is beyond {_HIGHEST:g} m: is its unit right?"
+        )
     if options.detrend:
         slope, level = np.polyfit(s - s[0], z - z[0], 1)
         z = z - z[0] - level - slope * (s - s[0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,13 @@ _STATION = re.compile(
     r"weg|strecke)\b",
     re.IGNORECASE,
 )
-_IN_NAME = re.compile(r"(?:\bat\s+)?\b(?:v|y|offset|lateral)\s*=\s*(?P<v>[+-]?\d+(?:\.\d+)?)\s*m\b")
+_IN_NAME = re.compile(
+    r"(?:\bat\s+)?\b(?:v|y|offset|lateral)\s*=\s*(?P<v>[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?)\s*"
+    r"(?P<unit>mm|cm|m)\b",
+    re.IGNORECASE,
+)
+_PLACE_UNIT = {"m": 1.0, "cm": 0.01, "mm": 0.001}
+_MOST_BEHIND = 3  # lines of words behind a table
 _UNIT_WORD = re.compile(r"^(?:mm|cm|dm|m|km|um|µm|in|inch|ft|mil|mi)$")
 
 
@@ -43,7 +50,9 @@ def read_table(data: bytes, path: Path) -> Survey:
     InputError
         No text, no table, a cell that is no number, fewer than two columns.
     """
-    layout = _table(text_of(data, path), path)
+    text = text_of(data, path)
+    layout = _table(text, path)
+    _check_whole(text, layout, path)
     if layout.width < 2:
         raise InputError(
             f"{path}: has one column; a profile needs a station and a height on every line"
@@ -86,6 +95,24 @@ def _table(text: str, path: Path) -> Layout:
         raise
 
 
+def _check_whole(text: str, layout: Layout, path: Path) -> None:
+    """Refuse lines that the table would lose: among its rows, before its first, behind its last."""
+    taken = set(np.asarray(layout.numbers).tolist())
+    first, last = min(taken), max(taken)
+    behind = 0
+    for number, line in enumerate(text.splitlines(), start=1):
+        if number in taken or not line.strip():
+            continue
+        cells = cells_of(line, layout.mark)
+        before = number < first and len(cells) == layout.width and is_number(cells[0])
+        behind += number > last
+        if before or first < number < last or behind > _MOST_BEHIND:
+            raise InputError(
+                f"{path}: line {number} must hold numbers; got {line.strip()[:40]!r}: mend it, or "
+                "take it off"
+            )
+
+
 def _headings(layout: Layout) -> list[Heading]:
     """Return names and units of all columns; a line of units may stand below that of names."""
     words = [cell.strip().strip("()[]") for cell in layout.heading]
@@ -102,11 +129,15 @@ def _headings(layout: Layout) -> list[Heading]:
 def _heading(layout: Layout, column: int) -> Heading:
     if not layout.heading:
         return Heading(name=f"track {column}" if column else "station")
-    one = read_heading(layout.heading[column], column)
+    # the unit of the place across the road is not that of the heights
+    bare = re.sub(r"\s{2,}", " ", _IN_NAME.sub("", layout.heading[column])).strip(" ,;:")
+    one = read_heading(bare, column)
+    if place := _IN_NAME.search(layout.heading[column]):
+        one = replace(one, name=f"{one.name} {place[0]}")
     unit = one.unit
     if not unit and layout.units:
         unit = layout.units[column].strip().strip("()[]").strip()
-    if not unit and (tail := re.search(r"[_ ](\w+)$", one.name)) and _UNIT_WORD.match(tail[1]):
+    if not unit and (tail := re.search(r"[_ ](\w+)$", bare)) and _UNIT_WORD.match(tail[1]):
         unit = tail[1]  # elevation_mm
     return Heading(name=one.name, unit=unit)
 
@@ -114,7 +145,7 @@ def _heading(layout: Layout, column: int) -> Heading:
 def _place(name: str) -> float | None:
     """Return where across the road a track lies, if its name says so [m]."""
     found = _IN_NAME.search(name)
-    return None if found is None else float(found["v"])
+    return None if found is None else float(found["v"]) * _PLACE_UNIT[found["unit"].lower()]
 
 
 def _numbers(layout: Layout, path: Path) -> Float[Array, "rows columns"]:

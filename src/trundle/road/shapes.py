@@ -26,6 +26,8 @@ __all__ = [
 ]
 
 _WALL = 2e-3  # m: a wall is drawn over so much
+_WIDEST = 0.5  # m, of a gap
+_STEEPEST = 0.5  # m/m, of a ramp
 _CURVE = 33  # points to half a wave; the cubic between them is within 1e-7 of it
 RAIL_GAUGE = 1.435
 """Between the heads of rails of standard gauge [m]."""
@@ -61,8 +63,11 @@ class ExpansionJoint:
             set_frozen(self, runout=positive("runout", self.runout))
         if self.gap == 0.0 and self.step == 0.0:
             raise InputError("a joint has a gap or a step: give one")
-        if 0.0 < self.gap < 2.0 * _WALL:
-            raise InputError(f"gap must be at least {2e3 * _WALL:g} mm; got {1e3 * self.gap:g} mm")
+        if self.gap and not 2.0 * _WALL <= self.gap <= _WIDEST:
+            raise InputError(
+                f"gap must be {2e3 * _WALL:g} mm to {_WIDEST:g} m; got {self.gap:g} m: a wider one "
+                "is a pothole"
+            )
 
     def outline(self, sinking: float) -> Profile:
         """Return its height [m]; of a gap no more depth than a tyre sinks in."""
@@ -233,6 +238,10 @@ class RampKink:
             length=positive("length", self.length),
             rounding=non_negative("rounding", self.rounding),
         )
+        if abs(self.grade) > _STEEPEST:
+            raise InputError(
+                f"grade must be within {_STEEPEST:g} m/m; got {self.grade:g}: 5 % is 0.05"
+            )
         if self.rounding > self.length:
             raise InputError(
                 f"rounding must be at most the ramp's length, {self.length:g} m; got "
@@ -321,6 +330,8 @@ class CableProtector:
             height=positive("height", self.height),
             top=positive("top", self.top),
         )
+        if self.top >= self.length:
+            raise InputError(f"top must be below length, {self.length:g} m; got {self.top:g} m")
         _check_ramps(self.length, 0.5 * (self.length - self.top))
 
     def outline(self, sinking: float) -> Profile:

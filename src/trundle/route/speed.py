@@ -16,6 +16,9 @@ from trundle.errors import InputError
 __all__ = ["ConstantSpeed", "SpeedLaw", "SpeedOverTime", "SteadyAcceleration"]
 
 
+_HARDEST = 15.0  # m/s2
+
+
 @runtime_checkable
 class SpeedLaw(Protocol):
     """Give distance travelled and speed as functions of time."""
@@ -182,6 +185,12 @@ class SpeedOverTime:
         if np.any(value < 0.0) or not np.any(value > 0.0):
             raise InputError(
                 f"speeds must be 0 or more, and one above it; got {value[:6].tolist()} m/s"
+            )
+        hardest = float(np.abs(np.diff(value) / np.diff(time)).max())
+        if hardest > _HARDEST:
+            raise InputError(
+                f"between two speeds the acceleration is {hardest:.3g} m/s2; no wheel holds more "
+                f"than {_HARDEST:g} m/s2: draw them further apart"
             )
         set_frozen(self, time=time, value=value)
 

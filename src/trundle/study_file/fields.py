@@ -26,6 +26,7 @@ __all__ = [
     "Flag",
     "Force",
     "Frequency",
+    "Grade",
     "GridPlace",
     "GroupName",
     "Length",
@@ -186,6 +187,7 @@ Ratio: TypeAlias = Annotated[
     _quantity("ratio"),
     _rule(lambda value: 0.0 <= value < 1.0, "must be at least 0 and below 1 (write 3 % or 0.03)"),
 ]
+Grade: TypeAlias = Annotated[float, _quantity("ratio")]
 Factor: TypeAlias = Annotated[float, _quantity("ratio"), _POSITIVE]
 Angle: TypeAlias = Annotated[float, _quantity("angle")]
 CrossArea: TypeAlias = Annotated[float, _quantity("area"), _POSITIVE]
@@ -216,12 +218,16 @@ def _crossing(value: Any) -> Any:
 def _axle_load(value: Any) -> float:
     """Read an axle's load as a mass [kg], be it written as one or as a weight."""
     try:
-        return to_si(value, "mass")
+        mass = to_si(value, "mass")
     except InputError as error:
         try:
-            return to_si(value, "force") / 9.81
+            mass = to_si(value, "force") / 9.81
         except InputError:
             raise PydanticCustomError("quantity", "{rule}", {"rule": str(error)}) from None
+    if not 1.0 <= mass <= _LARGEST["mass"]:
+        rule = f"an axle carries 1 kg to {_LARGEST['mass']:g} kg; this one {mass:g} kg"
+        raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+    return mass
 
 
 AxleLoad: TypeAlias = Annotated[float, BeforeValidator(_axle_load), _POSITIVE]

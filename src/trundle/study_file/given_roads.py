@@ -16,6 +16,7 @@ from trundle.study_file.draft import Draft
 __all__ = ["given_road_problems"]
 
 _ROUNDING = 1e-6  # m
+_PYTHON = "RoughnessBand(contact_patch=0.2)"  # what a message says to who writes Python
 
 
 def given_road_problems(draft: Draft, places: Mapping[str, str]) -> Iterator[Problem]:
@@ -65,7 +66,7 @@ def _of_one(
         yield Problem(
             place=place,
             value=f"driven on {who} by method {method.name!r}",
-            rule=str(error),
+            rule=str(error).replace(_PYTHON, 'contact_patch = "0.2 m"'),
             remedy="docs/roads.md says how tyres meet joints and profiles",
         )
 

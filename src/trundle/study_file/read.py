@@ -308,7 +308,11 @@ def _fields_within(kind: Any, data: Mapping[str, Any], location: list[Any]) -> t
             continue  # the name that a table of tables has in this file
         inner = (m.model_fields[name].annotation for m in sections if name in m.model_fields)
         sections = [section for annotation in inner for section in _sections_in(annotation)]
-    return tuple(dict.fromkeys(key for section in sections for key in section.model_fields))
+    return tuple(
+        dict.fromkeys(
+            info.alias or key for section in sections for key, info in section.model_fields.items()
+        )
+    )
 
 
 def _sections_in(annotation: Any) -> list[Any]:

@@ -13,6 +13,7 @@ from trundle.road import RoadClass
 from trundle.route import wheel_places
 from trundle.simulate import Crossing
 from trundle.simulate.sources.passage import Passage
+from trundle.simulate.sources.within import check_within
 from trundle.simulate.wheels.surfaces import tracks_on
 from trundle.structure import Structure, Surface
 from trundle.study_file.attempt import attempted
@@ -69,10 +70,18 @@ def wheels_off(draft: Draft) -> Iterator[Problem]:
             ),
         )
         yield from mistakes
-        if crossing is not None and not section.through:
+        if crossing is None:
+            continue
+        for one in draft.methods.values():
+            dt = one.interaction.integration.dt
+            _, mistakes = attempted(
+                f"method {one.name!r}.dt", lambda c=crossing, d=dt: check_within(c, d)
+            )
+            yield from mistakes
+        if not section.through:
             surface, _ = surface_at(draft, place, section.only)
             yield from _aside(draft, place, crossing, surface)
-        elif crossing is not None and draft.model is not None:
+        elif draft.model is not None:
             yield from _aside_through(draft.model, place, crossing)
 
 

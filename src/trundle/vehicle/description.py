@@ -139,7 +139,7 @@ class Description:
         stiffness = np.array([c.stiffness for c in made.contacts])
         setback = np.array([c.setback for c in made.contacts])
         front = float(setback.min())
-        return Vehicle(
+        made_of = Vehicle(
             name=self.name,
             system=LinearSystem(mass=made.mass, damping=made.damping, stiffness=made.stiffness),
             contact_map=made.contact_map,
@@ -163,6 +163,13 @@ class Description:
             assumption=self.assumption,
             confidence=self.confidence,
         )
+        for one in self.rounds:
+            if not made_of.contacts_of(one.axle):
+                raise InputError(
+                    f"vehicle {self.name!r} has no axle {(one.axle or 0) + 1} to be out of round; "
+                    f"there are: {', '.join(made_of.contact_names)}"
+                )
+        return made_of
 
 
 @kinds_checked

@@ -32,7 +32,7 @@ class OutOfRound:
     phase : float
         At the route's start [rad].
     axle : int or None
-        Number of the only contact that has it, from 0; None for all.
+        Number of the only axle that has it, from 0, both its wheels; None for all.
     """
 
     amplitude: float
@@ -110,6 +110,11 @@ class BodyForce:
             order=non_negative("order", self.order),
             radius=non_negative("radius", self.radius),
         )
+        if not self.during[0] < self.during[1]:
+            raise InputError(
+                f"a force acts from one time to a later one; got {self.during[0]:g} to "
+                f"{self.during[1]:g} s"
+            )
         with_wheels = self.order > 0.0 and self.radius > 0.0
         if (self.frequency > 0.0) == with_wheels or (self.order > 0.0) != (self.radius > 0.0):
             raise InputError(

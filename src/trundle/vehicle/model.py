@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Complex, Float
 from scipy import linalg
 
-from trundle._checks import frozen_array, non_negative, set_frozen
+from trundle._checks import frozen_array, set_frozen, within
 from trundle._typing import Array
 from trundle.dynamics import LinearSystem
 from trundle.errors import InputError, UnrestrainedModeError
@@ -21,6 +21,8 @@ __all__ = ["GRAVITY", "Confidence", "Vehicle"]
 
 Confidence: TypeAlias = Literal["high", "medium", "low"]
 """How far numbers can be trusted: read in their source; inferred in part; mostly assumed."""
+
+_LARGEST_WHEEL = 3.0  # m, of a contact patch or a radius
 
 GRAVITY = 9.81
 """Acceleration of gravity [m/s2]."""
@@ -134,7 +136,7 @@ class Vehicle:
             shape = (self.system.n_dofs,)
             set_frozen(self, pitching=frozen_array("pitching", self.pitching, shape=shape))
         for name in ("contact_patch", "wheel_radius"):
-            set_frozen(self, **{name: non_negative(name, getattr(self, name))})
+            set_frozen(self, **{name: within(name, getattr(self, name), 0.0, _LARGEST_WHEEL)})
         set_frozen(self, contact_map=contact_map, **vectors)
 
     def with_inner_contacts(self, *, braked: bool) -> Vehicle:
@@ -164,7 +166,7 @@ class Vehicle:
             static_forces=np.concatenate([self.static_forces, none]),
             setback=np.concatenate([self.setback, none]),
             lateral=np.concatenate([self.lateral, none + self.lateral[0]]),
-            contact_names=(*self.contact_names, *names),
+            contact_names=(*self.contact_names, *(f"{name}, inside" for name in names)),
             inner=len(rows),
         )
 
@@ -176,6 +178,15 @@ class Vehicle:
             lateral=-self.lateral,
             units=(),
         )
+
+    def contacts_of(self, axle: int | None) -> list[int]:
+        """Return the contacts of an axle, from 0; all that touch the ground for None."""
+        outer = range(self.n_contacts - self.inner)
+        if axle is None:
+            return list(outer)
+        name = f"axle {axle + 1}"
+        return [i for i in outer if self.contact_names[i].removesuffix(" left").removesuffix(
+            " right") == name]  # fmt: skip
 
     @property
     def is_linear(self) -> bool:

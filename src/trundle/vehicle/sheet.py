@@ -88,8 +88,14 @@ class DataSheet:
         if n < 1 or self.setbacks[0] != 0.0 or np.any(np.diff(self.setbacks) <= 0.0):
             raise InputError(f"setbacks must begin at 0 and rise; got {list(self.setbacks)} m")
         self._check_springs()
-        if self.unsprung and np.any(np.array(self.unsprung) >= np.array(self.loads)):
-            raise InputError("an axle's unsprung mass must be below its load")
+        least = np.minimum(self.loads, self.laden) if self.laden else np.array(self.loads)
+        if self.unsprung and np.any(np.array(self.unsprung) >= least):
+            raise InputError("an axle's unsprung mass must be below its load, empty and laden")
+        if self.laden and sum(self.laden) <= sum(self.loads):
+            raise InputError(
+                f"a laden vehicle is heavier than an empty one; got {sum(self.laden):g} kg and "
+                f"{sum(self.loads):g} kg"
+            )
 
     def _check_springs(self) -> None:
         sprung, stated = bool(self.unsprung), bool(self.tyre_stiffness)
@@ -203,9 +209,9 @@ def quarter_car_springs(
 
     Examples
     --------
-    >>> k, kt = quarter_car_springs(1000.0, 150.0, 1.236, 10.74)
-    >>> round(k, -2), round(kt, -3)
-    (63300.0, 655000.0)
+    >>> k, kt = quarter_car_springs(1000.0, 100.0, 1.0, 10.0)
+    >>> round(k * kt / (1000.0 * 100.0 * 10.0**2 * (2.0 * np.pi) ** 4), 9)
+    1.0
     """
     one, two = (2.0 * np.pi * positive("bounce", bounce)) ** 2, (2.0 * np.pi * hop) ** 2
     a, b, c = 1.0 / sprung + 1.0 / unsprung, one + two, one * two * sprung

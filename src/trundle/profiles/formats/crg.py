@@ -27,6 +27,10 @@ _END = re.compile(rb"^\$\$", re.MULTILINE)
 _OTHER_FILE = re.compile(rb"^\s*\$ROAD_CRG_FILE", re.MULTILINE | re.IGNORECASE)
 _SHORT = re.compile("header u range gives", re.IGNORECASE)
 _COLUMNS = {b"#:LRFI": 10, b"#:LDFI": 20}  # of a number as text
+_KEY = re.compile(
+    rb"^\s*((?:reference_line|long_section)_\w+)\s*=\s*([^\s!]+)", re.MULTILINE | re.IGNORECASE
+)
+_SAME_PLACE = 1e-3  # m
 _MOST = 50_000_000  # numbers of a grid
 
 
@@ -58,7 +62,9 @@ def read_crg(data: bytes, path: Path) -> Survey:
             "(reference_line_end_u), so nobody can tell whether it is whole: add it"
         )
     _check_last_line(data, head, path)
+    said = _said(head, path)
     road = _road(data, path)
+    _check_places(road, said, path)
     holes = int(np.isnan(road.z).sum())
     if holes:
         u, v = np.argwhere(np.isnan(road.z))[0]
@@ -75,11 +81,46 @@ def read_crg(data: bytes, path: Path) -> Survey:
         lateral=tuple(float(v) for v in road.v),
         where="sample",
         lines=np.arange(1, len(road.u) + 1),
-        notes=() if road.is_straight else (
-            "its reference line is curved: stations are along it, and tracks beside it are laid "
-            "under the wheels by station",
-        ),
+        notes=_notes(head, road),
     )  # fmt: skip
+
+
+def _said(head: bytes, path: Path) -> dict[str, float]:
+    """Return the numbers of the header; one that is none, or not finite, is refused."""
+    said: dict[str, float] = {}
+    for key, word in _KEY.findall(head):
+        try:
+            value = float(word)
+        except ValueError:
+            value = np.nan
+        if not np.isfinite(value):
+            raise InputError(
+                f"{path}: {key.decode()} must be a number; got {word.decode('latin-1')!r}"
+            )
+        said[key.decode().lower()] = value
+    return said
+
+
+def _check_places(road: Any, said: dict[str, float], path: Path) -> None:  # noqa: ANN401
+    """Refuse cuts that do not lie where the header says."""
+    for key, found in (("long_section_v_right", road.v[0]), ("long_section_v_left", road.v[-1])):
+        if key in said and abs(said[key] - float(found)) > _SAME_PLACE:
+            raise InputError(
+                f"{path}: its header says {key} = {said[key]:g} m, and its {len(road.v)} cuts lie "
+                f"from {road.v[0]:g} to {road.v[-1]:g} m: which is wrong?"
+            )
+
+
+def _notes(head: bytes, road: Any) -> tuple[str, ...]:  # noqa: ANN401 - the library's own
+    notes: list[str] = []
+    if not road.is_straight:
+        notes.append(
+            "its reference line is curved: stations are along it, and tracks beside it are laid "
+            "under the wheels by station"
+        )
+    if re.search(rb"^\s*\$ROAD_CRG_MODS", head, re.MULTILINE | re.IGNORECASE):
+        notes.append("its modifiers ($ROAD_CRG_MODS) are not applied: the grid is read as it is")
+    return tuple(notes)
 
 
 def _check_last_line(data: bytes, head: bytes, path: Path) -> None:
@@ -107,8 +148,9 @@ def _road(data: bytes, path: Path) -> Any:  # noqa: ANN401 - the library's own
         try:
             road = crg.read(str(copy), dtype="float64")
         except (ValueError, ArithmeticError, LookupError, OSError, MemoryError) as error:
-            said = " ".join(str(error).replace(str(copy), path.name).split())[:200]
-            raise InputError(f"{path}: cannot be read as OpenCRG: {said}") from None
+            said = str(error).replace(str(copy), path.name).split("To open it anyway")[0]
+            words = " ".join(said.split())[:160]
+            raise InputError(f"{path}: cannot be read as OpenCRG: {words}") from None
         doubts = [str(one) for one in (*road.read_errors, *road.read_warnings)]
     short = next((one for one in doubts if _SHORT.search(one)), None)
     if short is not None:

@@ -43,20 +43,18 @@ def read_erd(data: bytes, path: Path) -> Survey:
     InputError
         A header that is not whole, binary numbers, fewer samples than it says, words among them.
     """
-    lines = data.decode("latin-1").splitlines()
+    lines = data.removeprefix(b"\xef\xbb\xbf").decode("latin-1").splitlines()
     n_channels, n_samples, step = _stored(lines, path)
     end = next((i for i, line in enumerate(lines) if line.strip().upper() == "END"), None)
     if end is None:
         raise InputError(f"{path}: has no line END behind its header: it is cut short")
     said = _keywords(lines[2:end])
-    numbers, at = _numbers(lines, end + 1, path)
-    if len(numbers) % n_channels or (n_samples > 0 and len(numbers) // n_channels < n_samples):
+    table, at = _numbers(lines, end + 1, n_channels, path)
+    if n_samples > 0 and len(table) != n_samples:
         raise InputError(
-            f"{path}: says {n_samples if n_samples > 0 else 'no number of'} samples of "
-            f"{n_channels} channels on line 2 and holds {len(numbers)} numbers: it is cut short; "
-            "copy it again"
+            f"{path}: says {n_samples} samples of {n_channels} channels on line 2 and holds "
+            f"{len(table)}: it is cut short, or not of this header; copy it again"
         )
-    table = numbers.reshape(-1, n_channels)[: n_samples if n_samples > 0 else None]
     start = _number(said.get("XSTART", "0"), "XSTART", path)
     return Survey(
         station=start + step * np.arange(len(table)),
@@ -64,7 +62,7 @@ def read_erd(data: bytes, path: Path) -> Survey:
         names=_names(said, n_channels),
         station_unit=said.get("XUNITS", "").strip().lower(),
         units=tuple(word.lower() for word in _cut(said.get("UNITSNAM", ""), _WORD, n_channels)),
-        lines=at[::n_channels][: len(table)],
+        lines=at,
     )
 
 
@@ -86,8 +84,10 @@ def _stored(lines: list[str], path: Path) -> tuple[int, int, float]:
         )
     if not 0 < n_channels <= _MOST_CHANNELS or n_samples > _MOST_POINTS:
         raise InputError(f"{path}: says {n_channels} channels of {n_samples} samples on line 2")
-    if not (np.isfinite(step) and step > 0.0):
-        raise InputError(f"{path}: its step on line 2 must be above 0; got {step:g}")
+    if not 1e-9 < step < 1e6:
+        raise InputError(
+            f"{path}: its step on line 2 must be above 0, and no more than 1e6; got {step:g}"
+        )
     return n_channels, n_samples, step
 
 
@@ -117,24 +117,36 @@ def _cut(text: str, width: int, count: int) -> list[str]:
     return [text[i * width : (i + 1) * width].strip() for i in range(count)]
 
 
-def _numbers(lines: list[str], first: int, path: Path) -> tuple[Array, Array]:
-    """Return all numbers behind the header, and on which line each stands."""
-    found: list[float] = []
+def _numbers(lines: list[str], first: int, n_channels: int, path: Path) -> tuple[Array, Array]:
+    """Return all rows behind the header, and on which line each stands."""
+    rows: list[list[float]] = []
     at: list[int] = []
     for i, line in enumerate(lines[first:], first + 1):
         words = [word for word in re.split(r"[\s,]+", line) if word]
-        found += [_number(word, f"line {i}", path) for word in words]
-        at += [i] * len(words)
-    return np.array(found), np.array(at, dtype=np.int64)
+        if not words:
+            continue
+        if len(words) != n_channels:
+            raise InputError(
+                f"{path}: line {i} holds {len(words)} numbers, and line 2 says {n_channels} "
+                "channels: it is damaged, or has decimal commas"
+            )
+        rows.append([_number(word, f"line {i}", path) for word in words])
+        at.append(i)
+    return np.array(rows).reshape(len(rows), n_channels), np.array(at, dtype=np.int64)
 
 
 def _number(word: str, where: str, path: Path) -> float:
     try:
-        return float(word)
+        value = float(word)
     except ValueError:
-        raise InputError(f"{path}: {where} must be a number; got {word.strip()[:40]!r}") from None
+        value = np.nan
+    if not np.isfinite(value):
+        raise InputError(f"{path}: {where} must be a number; got {word.strip()[:40]!r}")
+    return value
 
 
 FORMAT = ProfileFormat(
-    name="ERD", claims=lambda head: head.lstrip()[:8].upper() == b"ERDFILEV", read=read_erd
+    name="ERD",
+    claims=lambda head: head.removeprefix(b"\xef\xbb\xbf").lstrip()[:8].upper() == b"ERDFILEV",
+    read=read_erd,
 )

@@ -124,6 +124,15 @@ class Crossing:
 
     def _check_corners(self) -> None:
         """Refuse wheels beside a line that turns sharply: they would jump."""
+        bends = self.route.legs.curvature[:, None]
+        beside = (
+            np.array([self.vehicle.lateral.min(), self.vehicle.lateral.max()]) + self.route.lane
+        )
+        if np.any(1.0 - bends * beside <= 0.0):
+            raise InputError(
+                f"route {self.route.name!r}: corners of {self.route.radius:g} m are narrower than "
+                "half the vehicle is wide: give a larger radius"
+            )
         if not self.route.has_sharp_corners:
             return
         aside = float(np.abs(self.vehicle.lateral + self.route.lane).max())

@@ -20,7 +20,7 @@ from trundle.simulate.sources.given_road import GivenRoad, given_road, given_roa
 from trundle.simulate.sources.random_road import RandomRoad
 from trundle.simulate.sources.source import Source, WaveSet
 from trundle.simulate.sources.waves import waves_under
-from trundle.simulate.sources.within import forces_within, lifts_of_wheels
+from trundle.simulate.sources.within import check_within, forces_within, lifts_of_wheels
 from trundle.structure import ContactShape, Structure
 from trundle.vehicle import Vehicle
 
@@ -174,6 +174,7 @@ class Passage:
 
     def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
         """Refuse a given profile that the step cannot show; return doubts about one."""
+        check_within(self.crossing, dt)
         return given_road_doubts((self.crossing,), dt, duration)
 
     def doubts(

@@ -6,10 +6,37 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array
+from trundle.errors import InputError
 from trundle.route import Along
 from trundle.simulate.sources.crossing import Crossing
 
-__all__ = ["forces_within", "lifts_of_wheels"]
+__all__ = ["check_within", "forces_within", "lifts_of_wheels"]
+
+_SHOWN = 0.4  # of the sampling frequency, up to which a step shows a wave
+
+
+def check_within(crossing: Crossing, dt: float) -> None:
+    """Refuse engines and wheels that shake faster than a step shows: they would look slow.
+
+    Raises
+    ------
+    InputError
+        A frequency above 0.4 of the steps a second.
+    """
+    vehicle, speed = crossing.vehicle, crossing.route.law.fastest
+    turning = speed / (2.0 * np.pi)
+    shaken = [(f"force {f.name!r}", f.frequency) for f in vehicle.forces if f.frequency]
+    shaken += [
+        (f"force {f.name!r}", turning * f.order / f.radius) for f in vehicle.forces if f.radius
+    ]
+    shaken += [("out_of_round", turning * r.order / r.radius) for r in vehicle.rounds]
+    for what, frequency in shaken:
+        if frequency > _SHOWN / dt:
+            raise InputError(
+                f"route {crossing.route.name!r}: {what} shakes at {frequency:.4g} Hz, and steps of "
+                f"{1e3 * dt:g} ms show {_SHOWN / dt:.4g} Hz at most: shorten dt to "
+                f"{1e3 * _SHOWN / frequency:.2g} ms"
+            )
 
 
 def lifts_of_wheels(crossing: Crossing, along: Along) -> Float[Array, "2 times contacts"] | None:
@@ -19,8 +46,7 @@ def lifts_of_wheels(crossing: Crossing, along: Along) -> Float[Array, "2 times c
         return None
     out = np.zeros((2, *along.station.shape))
     for one in vehicle.rounds:
-        contacts = range(vehicle.n_contacts - vehicle.inner) if one.axle is None else [one.axle]
-        for i in contacts:
+        for i in vehicle.contacts_of(one.axle):
             height, slope = one.lift(along.station[:, i])
             out[0, :, i] += height
             out[1, :, i] += slope

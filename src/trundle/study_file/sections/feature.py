@@ -30,20 +30,20 @@ from trundle.study_file.attempt import attempted
 from trundle.study_file.draft import Draft, refer
 from trundle.study_file.fields import (
     Angle,
+    Grade,
     Length,
     Name,
     NonNegativeLength,
-    Number,
     Place,
     PositiveLength,
-    Ratio,
     Section,
 )
 from trundle.study_file.kinds import SectionKind
 
 __all__ = ["FEATURE", "build", "problems"]
 
-_MOST = 10_000  # repetitions
+_MOST = 10_000  # repetitions, and stations of one feature
+_RUN_IN = 200.0  # m before a route, that a vehicle may come along
 
 
 def _as_list(value: Any) -> Any:
@@ -53,7 +53,7 @@ def _as_list(value: Any) -> Any:
 class _Placed(Section):
     """Where a feature lies."""
 
-    at: Annotated[tuple[Length, ...], BeforeValidator(_as_list)] = ()
+    at: Annotated[tuple[Length, ...], BeforeValidator(_as_list), Field(max_length=_MOST)] = ()
     every: PositiveLength | None = None
     count: Annotated[int, Field(strict=True, ge=2, le=_MOST)] | None = None
     line: tuple[Place, Place] | None = None
@@ -139,7 +139,7 @@ class KinkSection(_Placed):
     """A change of grade."""
 
     kind: Literal["ramp_kink"]
-    grade: Annotated[Number | Ratio, Field()]
+    grade: Grade
     length: PositiveLength
     rounding: NonNegativeLength = 0.0
 
@@ -218,10 +218,14 @@ def problems(draft: Draft) -> Iterator[Problem]:
         for j, label in enumerate(section.roads):
             if not draft.file.has_bad("road"):
                 yield from refer(f"{place}.roads[{j + 1}]", label, set(draft.roads), "road")
-        if section.line is not None and draft.drives and not _crossings(section, draft):
+        if section.line is None or not draft.drives:
+            continue
+        crossed, _ = attempted(place, lambda s=section: _crossings(s, draft))
+        if crossed == []:
+            (a, b), (c, d) = section.line
             yield Problem(
                 place=f"{place}.line",
-                value=str(section.line),
+                value=f"from ({a:g}, {b:g}) to ({c:g}, {d:g}) m",
                 rule="no route crosses this line",
                 remedy="draw it from one side of a route to the other",
             )
@@ -238,11 +242,14 @@ def _met_by_nobody(draft: Draft) -> Iterator[Problem]:
             continue
         longest = max(d.route.length for d in drives)
         for station in section.stations:
-            if all(station - start > longest for start in starts):
+            behind = all(station - start > longest for start in starts)
+            if behind or all(station - start < -_RUN_IN for start in starts):
                 yield Problem(
                     place=f"feature[{i + 1}].at",
                     value=f"{station:g} m",
-                    rule=f"no route meets it: the longest ends after {longest:.4g} m",
+                    rule=f"no route meets it: the longest ends after {longest:.4g} m"
+                    if behind
+                    else f"no route meets it: it lies more than {_RUN_IN:g} m before the start",
                     remedy="give its station from the route's start (or in the chainage of a "
                     "measured road)",
                 )

@@ -48,7 +48,7 @@ validate: .venv/.ready-dev
 else
 validate: .venv/.ready-dev
 	$(BIN)/python -m pytest -n 2 --record=build/validation.json tests/validation
-	$(BIN)/python -m pytest -n 2 -m longest tests/dynamics tests/run tests/examples
+	$(BIN)/python -m pytest -n 2 -m longest tests --ignore=tests/validation
 	$(BIN)/python scripts/mutate_inputs.py
 	$(BIN)/python scripts/combine_studies.py
 	$(BIN)/python scripts/kill_at_random.py

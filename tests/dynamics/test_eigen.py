@@ -171,7 +171,7 @@ def test_many_equal_modes_are_all_found(backend, copies, f_max):
     assert found.residuals.max() < 1e-7
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 @pytest.mark.parametrize("backend", available_backends())
 @pytest.mark.parametrize(("mesh_size", "f_max"), [(2.0, 39.2), (2.0, 124.0), (3.0, 44.0)])
 def test_a_floor_of_equal_columns_keeps_all_its_modes(backend, mesh_size, f_max):

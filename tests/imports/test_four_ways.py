@@ -119,7 +119,7 @@ def levels(study):
     return cell.rms_velocity, cell.spectra.values
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_the_same_truck_does_the_same_to_all(built, ways):
     """RMS within 2 %, as asked: of models by 1e-5; of modes alone on the storey above by 2 %."""
     ours, ours_bands = levels(built)

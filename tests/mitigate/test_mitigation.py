@@ -45,6 +45,7 @@ def outcome(sweep, change, speed, road):
     return verdict
 
 
+@pytest.mark.longest
 def test_a_combination_is_what_its_own_study_says(tmp_path):
     """Class C at 12 km/h, a thicker slab, more damping, an isolator: against four studies."""
     changes = [
@@ -75,6 +76,7 @@ def test_a_combination_is_what_its_own_study_says(tmp_path):
     assert margins[0] == pytest.approx(outcome(sweep, "as in the study", speeds[0], "C").margin)
 
 
+@pytest.mark.longest
 def test_changes_together_are_what_their_own_study_says(tmp_path):
     """Slab, damping and isolator in all 8 combinations; the last against a study of all three."""
     levers = [

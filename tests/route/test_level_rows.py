@@ -73,6 +73,7 @@ def test_points_read_all_three_axes_and_limits_hold_for_their_own():
     assert "only vertical motion" not in words
 
 
+@pytest.mark.longest
 def test_a_building_that_is_its_own_mirror_image_moves_along_its_plane_alone():
     """A route along the middle moves nothing across it; one beside it does.
 

@@ -100,6 +100,7 @@ def test_every_node_at_every_step_is_what_a_point_there_gives(tmp_path):
     assert mapped.numbers["peak_acceleration"][at] == pytest.approx(expected, rel=1e-3)
 
 
+@pytest.mark.longest
 def test_traffic_is_mapped_when_asked_for(tmp_path):
     """Both trucks at once are louder everywhere than the quieter of them alone."""
     more = LONG.replace(

@@ -120,7 +120,7 @@ def test_a_killed_run_ends_with_the_same_bytes(tmp_path, whole, count):
     assert sorted(e.name for e in folder.iterdir()) == ["out", "study.toml"]
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_workers_and_a_killed_worker_give_the_same_bytes(tmp_path, whole):
     """Two dask workers, one of them killed with a part in its hands: the part is done again."""
     psutil = pytest.importorskip("psutil")

@@ -54,7 +54,7 @@ def bytes_of(folder):
     return whole.hexdigest()
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_threads_workers_and_what_other_studies_left_change_no_byte(tmp_path):
     """One thread, two, two workers, three; a cold cache of modes, and one that holds them.
 

@@ -83,6 +83,7 @@ def test_damping_that_kills_a_mode_within_a_step():
     assert difference(modal.contact_forces, direct.contact_forces[:, ::5]) < 2e-2
 
 
+@pytest.mark.longest
 def test_a_coupled_block_is_the_floor_under_its_own_forces():
     """Coupled response = the response of the decoupled floor to the coupled contact forces.
 

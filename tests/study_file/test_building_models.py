@@ -162,7 +162,7 @@ DECOUPLED = GOOD[GOOD.index("[[method]]") : GOOD.index("[criteria]")].replace(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_study_on_modes_alone_runs_and_says_what_is_missing(tmp_path):
     """The levels of the plan's own modes without their static rest; and that is what is told."""
     plan, path = modes_study(tmp_path, more="\n" + DECOUPLED + MAP)

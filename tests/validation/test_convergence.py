@@ -80,6 +80,7 @@ def smooth_drive():
     )  # fmt: skip
 
 
+@pytest.mark.longest
 @pytest.mark.parametrize("kind", [Decoupled, Coupled])
 @pytest.mark.parametrize("scheme", ["newmark", "modal"])
 def test_time_step(record, kind, scheme):
@@ -111,6 +112,7 @@ def test_time_step(record, kind, scheme):
     )  # fmt: skip
 
 
+@pytest.mark.longest
 @pytest.mark.parametrize("residual", [False, True])
 def test_modes(record, residual):
     """Deflection during a slow crossing as modes are added, with and without the rest's statics.

@@ -185,7 +185,7 @@ def test_a_fine_step_leaves_nothing(record):
     compare(record, runs, motion, name=name, tolerance=lambda _: 1e-3, peak=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_the_other_solver_has_converged(record):
     """Half its step changes no band by more than 1e-4."""
     case = small(container_truck_40ft())

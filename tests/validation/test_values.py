@@ -54,13 +54,13 @@ def test_quick_cases(record, case):
     state(record, case.values())
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 @pytest.mark.parametrize("case", [v2_sprung_mass, v3_moving_mass])
 def test_ode_cases(record, case):
     state(record, case.values())
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 @pytest.mark.parametrize(("kmh", "coupled"), v5_container_truck.PRINTED)
 def test_container_truck(record, kmh, coupled):
     state(record, v5_container_truck.crossing_values(kmh, coupled=coupled))

@@ -38,7 +38,7 @@ def velocities(floor, turn, ends):
     return ensemble(floor, crossing, method=method, points=points, n_runs=2, seed=1).velocity
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 @pytest.mark.parametrize("ends", [((3.0, 10.0), (30.0, 10.0)), ((0.0, 5.0), (0.0, 40.0))])
 def test_the_reference_unit_turned_by_30_degrees_answers_the_same_truck_the_same(ends):
     """Its three planes of symmetry are oblique then; a route in one of them is shared by half.

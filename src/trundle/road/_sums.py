@@ -55,7 +55,7 @@ def _put_before(one: float, other: float, values: Array) -> Array:
 def _ends(profile: Profile, breaks: Float[Array, " breaks"]) -> Float[Array, "2 intervals 2"]:
     """Return height and slope at both ends of every interval, from within it."""
     width = np.diff(breaks)
-    # Three readings inside an interval tell the cubic and its slope at the ends, kinks or not.
+    # Height and slope at two points inside an interval tell its cubic, kinks at the ends or not.
     x = np.array([0.25, 0.75])
     z, g = profile.at(breaks[:-1, None] + width[:, None] * x)
     rise = np.diff(z, axis=1)[:, 0]

@@ -1,0 +1,1 @@
+"""Describe what machines press on a floor: rotors out of balance, strokes, run-ups."""

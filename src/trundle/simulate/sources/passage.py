@@ -81,6 +81,16 @@ class Passage:
         return self.crossing.road.spectrum is not None
 
     @property
+    def varies(self) -> bool:
+        """Whether anything but its road is random: nothing is."""
+        return False
+
+    @property
+    def complete(self) -> bool:
+        """Whether its road holds all waves that there are: none does."""
+        return False
+
+    @property
     def leaves(self) -> float:
         """Time at which the last wheel leaves [s]."""
         return self.crossing.exit_time

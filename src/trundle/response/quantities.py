@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from trundle._typing import Array
 from trundle.signals import mtvv, vibration_dose_value
@@ -37,6 +37,9 @@ class Histories:
         Weighted acceleration whose response factor is 1 [m/s2].
     contact_forces : ndarray of float, shape (n_runs, n_steps, n_contacts)
         Forces on the floor, positive when pressing [N].
+    lifts : ndarray of bool, shape (n_contacts,)
+        Which contacts would leave the floor rather than pull: wheels; not what forces given about
+        a weight act at.
     """
 
     time: Float[Array, " steps"]
@@ -46,6 +49,7 @@ class Histories:
     felt: Float[Array, "runs points felt"]
     base: Float[Array, " points"]
     contact_forces: Float[Array, "runs all contacts"]
+    lifts: Bool[Array, " contacts"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -159,6 +163,13 @@ QUANTITIES: tuple[Quantity, ...] = (
         measure=lambda h: vibration_dose_value(h.felt, h.sampling_frequency),
     ),
     Quantity(
+        name="weighted_rms",
+        units="m/s2",
+        long_name="RMS of weighted acceleration over the record",
+        stored=False,
+        measure=lambda h: np.sqrt(np.mean(h.felt**2, axis=-1)),
+    ),
+    Quantity(
         name="peak_contact_force",
         units="N",
         long_name="largest contact force, static load included",
@@ -171,7 +182,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         long_name="whether a contact would have had to pull: it would have left the floor",
         per="contact",
         stored=False,
-        measure=lambda h: np.any(h.contact_forces < 0.0, axis=1),
+        measure=lambda h: np.any(h.contact_forces < 0.0, axis=1) & h.lifts,
     ),
 )
 """All of them, in the order of tables."""

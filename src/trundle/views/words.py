@@ -81,6 +81,8 @@ def rule_name(averaging: Averaging) -> str:
 
 def road_words(study: Study) -> list[str]:
     """Return what each road is: its label, level and Gd(n0)."""
+    if not study.drives:
+        return ["none: nobody drives"]
     return [
         f"{label}: {road.level.replace('_', ' ')} of class {road.name}, Gd(n0) = "
         f"{1e6 * road.roughness:.3g}e-6 m3"

@@ -122,6 +122,8 @@ def _options(hint: Any) -> tuple[Any, ...]:
 def _fits(value: object, wanted: Any) -> bool | None:
     """Return whether a value is of a kind; None where that is not looked at."""
     origin = typing.get_origin(wanted) or wanted
+    if origin is Any:  # which is a class, and refuses to be asked
+        return None
     if not isinstance(origin, type) or origin.__module__.startswith(("jaxtyping", "numpy")):
         return None
     numbers = origin in {int, float, complex, bool, object} or issubclass(origin, np.ndarray)

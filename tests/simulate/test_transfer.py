@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy import sparse
 from scipy.sparse.linalg import splu
+from test_sources import Shaker
 
 from models import simple_beam, small_floor
-from test_sources import Shaker
 from trundle.dynamics import ModalRatio, Rayleigh
 from trundle.errors import InputError
 from trundle.simulate import (

@@ -21,17 +21,15 @@ from trundle.errors import FitnessWarning, InputError
 from trundle.simulate.ground import Integration, PreparedFloor
 from trundle.simulate.laying_out import Place, spot_rows
 from trundle.simulate.modal.method import MODES_BEYOND, Modal
+from trundle.simulate.spectral.transfer_doubts import FAR_ENOUGH, transfer_doubts
 from trundle.structure import Spot, Spots, Structure
 
 __all__ = ["TransferFunctions", "check_lines", "modes_needed", "transfer"]
 
 _STEP = 1e-3  # s: nothing is stepped, but a floor is prepared for some step
 _LEAST = 25.0  # Hz: modes to here at least, so that lines near 0 have some
-_BEYOND = 3.0  # times the highest line must the modes reach, for 1.5 % of the largest answer there
-_DOUBTED = 2.0  # times: reaching less far, the uppermost lines are in doubt
 _ON_PLANE = 1e-6  # m
 _BYTES = 50e6  # of modal answers held at once
-_SHOWN = 0.95  # of a peak that lies between two lines
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -172,17 +170,12 @@ def transfer(
     receptance = _by_modes(lines, reach.propagator, shares @ reach.dof_shapes.T, reach.read_shapes)
     if reach.residual is not None:
         receptance += (shares @ reach.residual.T)[:, :, None] / _strained(lines, prepared.damping)
-    own = (
-        *_reach_doubts(lines, prepared.integration),
-        *_mirror_doubts(structure),
-        *_line_doubts(lines, reach.propagator),
-    )
     return TransferFunctions(
         frequencies=lines,
         receptance=receptance,
         load_names=tuple(loads),
         point_names=tuple(points),
-        doubts=(*prepared.doubts(), *prepared.damping.doubts(), *own),
+        doubts=transfer_doubts(lines, prepared, reach.propagator),
     )
 
 
@@ -190,7 +183,7 @@ def modes_needed(top: float, integration: Integration | None = None) -> float:
     """Return to which frequency modes are needed for lines up to one [Hz]."""
     if integration is not None and integration.f_max is not None:
         return integration.f_max
-    return max(_BEYOND * top, _LEAST)
+    return max(FAR_ENOUGH * top, _LEAST)
 
 
 def check_lines(frequencies: Float[Array, " lines"], integration: Integration) -> None:
@@ -269,12 +262,13 @@ def _in_modes(
     modes: Modes | None,
 ) -> PreparedFloor:
     """Return the floor in modes that reach as far as the lines need."""
-    structure, flexibility = floor, None
     if isinstance(floor, PreparedFloor):
         _check_same(floor, integration, damping)
         if floor.modes is not None:
             return floor
         structure, damping, flexibility = floor.floor, floor.damping, floor.flexibility
+    else:
+        structure, flexibility = floor, None
     if damping is None:
         raise InputError(
             "damping must be given unless the floor is prepared, such as ModalRatio(ratio=0.03)"
@@ -328,53 +322,3 @@ def _strained(lines: Array, damping: Damping) -> Complex[Array, " lines"]:
 def _parts(n: int, most: int) -> Iterator[slice]:
     for start in range(0, n, most):
         yield slice(start, min(start + most, n))
-
-
-def _reach_doubts(lines: Array, integration: Integration) -> Iterator[FitnessWarning]:
-    """Say where modes left out are too close to the uppermost lines to answer statically.
-
-    Small floors of some 15 and 45 modes, against all their dofs solved at every line, were off by
-    up to 0.15, 1.2, 5, 16 and 40 % of the largest answer at the line where modes reach 4, 3, 2, 1.5
-    and 1.25 times as far.
-    """
-    f_max, top = integration.f_max, float(lines[-1])
-    if f_max is not None and top * _DOUBTED > f_max:
-        yield FitnessWarning(
-            subject="modal truncation",
-            message=f"lines above {f_max / _DOUBTED:.3g} Hz lie close to modes left out: small "
-            "floors were up to 5 % off (of the largest answer at that line) at half of f_max, and "
-            f"40 % at {1.0 / MODES_BEYOND:.1f} of it; f_max = {_BEYOND * top:.3g} Hz brings all "
-            "lines to some 1 %",
-        )
-
-
-def _mirror_doubts(structure: Structure) -> Iterator[FitnessWarning]:
-    """Say that loads have images."""
-    if structure.mirrors:
-        planes = " and ".join(str(mirror) for mirror in structure.mirrors)
-        yield FitnessWarning(
-            subject="mirror planes",
-            message=f"the model ends at mirror planes ({planes}): each force acts together with "
-            "its images behind them; what one force does by itself needs a model of the whole",
-        )
-
-
-def _line_doubts(lines: Array, steps: ModalRecursion) -> Iterator[FitnessWarning]:
-    """Say where lines are too far apart to show how high a mode's peak is."""
-    f = np.sqrt(steps.square) / (2.0 * np.pi)
-    half_width = steps.double / (4.0 * np.pi)  # zeta f
-    inside = (f >= lines[0]) & (f <= lines[-1])
-    if len(lines) < 2 or not inside.any():
-        return
-    f, half_width = f[inside], half_width[inside]
-    after = np.clip(np.searchsorted(lines, f), 1, len(lines) - 1)
-    apart = lines[after] - lines[after - 1]
-    shown = half_width / np.hypot(half_width, 0.5 * apart)  # of a peak in the middle of two lines
-    worst = int(shown.argmin())
-    if shown[worst] < _SHOWN:
-        yield FitnessWarning(
-            subject="frequency lines",
-            message=f"lines are {apart[worst]:.3g} Hz apart at {f[worst]:.3g} Hz, where the peak of"
-            f" a mode is {2.0 * half_width[worst]:.2g} Hz wide: its height may be shown at "
-            f"{100 * shown[worst]:.0f} %; ask for more lines, or for a shorter range",
-        )

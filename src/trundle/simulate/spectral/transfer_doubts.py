@@ -36,8 +36,9 @@ def transfer_doubts(
     steps : ModalRecursion
         Frequencies and damping of these.
     """
+    of_steps = prepared.integration.doubts()  # of bands and wheels; here nothing is stepped
     return (
-        *prepared.doubts(),
+        *(one for one in prepared.doubts() if one not in of_steps),
         *prepared.damping.doubts(),
         *_reach_doubts(lines, prepared.integration),
         *_mirror_doubts(prepared.floor),

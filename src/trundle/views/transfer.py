@@ -132,7 +132,7 @@ def heading(quantity: Quantity) -> tuple[str, ...]:
 def rows(some: list[Curve]) -> Iterator[tuple[str, str, float, float, float, float, float]]:
     """Give every line of every curve as a row of a table."""
     for curve in some:
-        columns = (curve.frequencies, curve.values.real, curve.values.imag)
-        table = np.column_stack([*columns, curve.magnitude, curve.phase])
+        parts = (np.real(curve.values), np.imag(curve.values), curve.magnitude, curve.phase)
+        table = np.column_stack([curve.frequencies, *parts])
         for f, real, imaginary, magnitude, phase in table.tolist():
             yield curve.load, curve.point, f, real, imaginary, magnitude, phase

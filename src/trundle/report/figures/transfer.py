@@ -38,12 +38,11 @@ def transfer_figure(some: Sequence[Curve], quantity: str, title: str) -> Figure:
     height = 5.0 + _ROW * -(-len(names) // columns)
     figure, (size, phase) = new_figure(7.2, height, rows=2, share="x")
     for i, (curve, name) in enumerate(zip(some, names, strict=True)):
-        look = {
-            "color": COLOURS[i % len(COLOURS)],
-            "linestyle": _LINES[i // len(COLOURS) % len(_LINES)],
-        }
-        size.plot(curve.frequencies, curve.magnitude, label=name, **look)
-        phase.plot(curve.frequencies, _unjoined(curve.phase), **look)
+        colour = COLOURS[i % len(COLOURS)]
+        line = _LINES[i // len(COLOURS) % len(_LINES)]
+        f = curve.frequencies
+        size.plot(f, curve.magnitude, color=colour, linestyle=line, label=name)
+        phase.plot(f, _unjoined(curve.phase), color=colour, linestyle=line)
     make_logarithmic(size, "y")
     _write_more(size)
     size.set_ylabel(f"{quantity} [{some[0].unit}]")

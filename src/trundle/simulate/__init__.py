@@ -25,6 +25,7 @@ from trundle.simulate.sources.waves import Waves, place_waves
 from trundle.simulate.spectral.harmonics import Harmonics, harmonics, mean_response
 from trundle.simulate.spectral.place_spectra import place_spectra
 from trundle.simulate.spectral.places import PlaceResponses, lay_out_places
+from trundle.simulate.spectral.transfer import TransferFunctions, transfer
 from trundle.simulate.truncation import TruncationChange, truncation_change
 
 __all__ = [
@@ -51,6 +52,7 @@ __all__ = [
     "Runs",
     "Source",
     "StaticFlexibility",
+    "TransferFunctions",
     "TruncationChange",
     "WaveSet",
     "Waves",
@@ -68,5 +70,6 @@ __all__ = [
     "point_load_deflection",
     "prepare",
     "runs_with_mean",
+    "transfer",
     "truncation_change",
 ]

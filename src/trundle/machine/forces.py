@@ -133,7 +133,7 @@ class Unbalance:
 
     @property
     def reaches(self) -> float:
-        """Its frequency [Hz]."""
+        """Frequency of its turns [Hz]."""
         return self.frequency
 
     shows = reaches

@@ -14,7 +14,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from trundle._typing import Array
-from trundle.signals import mtvv, vibration_dose_value
+from trundle.signals import BASE_ACCELERATION, mtvv, vibration_dose_value
 
 __all__ = ["QUANTITIES", "Histories", "Mapped", "Quantity", "mapped", "tabled"]
 
@@ -58,11 +58,12 @@ class Mapped:
 
     Attributes
     ----------
-    of : {"velocity", "acceleration"}
-        Motion that it is measured on; acceleration is mapped where it is asked for.
+    of : {"velocity", "acceleration", "felt"}
+        Motion that it is measured on; acceleration, and what is felt of it (weighted by Wb), are
+        mapped where they are asked for.
     measure : callable
-        Takes the motion of some places over the record, shape (n_places, n_steps); returns an
-        array of shape (n_places,).
+        Takes the motion of some places over the record, shape (n_places, n_steps), and the steps a
+        second; returns an array of shape (n_places,).
     figure : str
         What its picture is called.
     title : str
@@ -71,8 +72,8 @@ class Mapped:
         What it is called beside the pointer.
     """
 
-    of: Literal["velocity", "acceleration"]
-    measure: Callable[[Float[Array, "places steps"]], Float[Array, " places"]]
+    of: Literal["velocity", "acceleration", "felt"]
+    measure: Callable[[Float[Array, "places steps"], float], Float[Array, " places"]]
     figure: str
     title: str
     word: str
@@ -120,7 +121,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         heading="peak acceleration",
         mapped=Mapped(
             of="acceleration",
-            measure=lambda a: np.maximum(a.max(axis=-1), -a.min(axis=-1)),
+            measure=lambda a, _: np.maximum(a.max(axis=-1), -a.min(axis=-1)),
             figure="map_peak",
             title="Peak acceleration over the floor",
             word="peak",
@@ -141,7 +142,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         heading="record RMS velocity",
         mapped=Mapped(
             of="velocity",
-            measure=lambda v: np.sqrt(np.mean(v**2, axis=-1)),
+            measure=lambda v, _: np.sqrt(np.mean(v**2, axis=-1)),
             figure="map_rms",
             title="RMS velocity over the floor",
             word="record RMS",
@@ -153,6 +154,13 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="1",
         long_name="largest 1 s RMS of weighted acceleration over the base curve",
         stored=False,
+        mapped=Mapped(
+            of="felt",
+            measure=lambda a, fs: mtvv(a, fs) / BASE_ACCELERATION,
+            figure="map_response_factor",
+            title="Response factor R over the floor",
+            word="R",
+        ),
         measure=lambda h: mtvv(h.felt, h.sampling_frequency) / h.base,
     ),
     Quantity(
@@ -160,6 +168,13 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="m/s1.75",
         long_name="vibration dose value of one event",
         stored=False,
+        mapped=Mapped(
+            of="felt",
+            measure=vibration_dose_value,
+            figure="map_vdv",
+            title="Vibration dose value of one event over the floor",
+            word="VDV",
+        ),
         measure=lambda h: vibration_dose_value(h.felt, h.sampling_frequency),
     ),
     Quantity(
@@ -194,6 +209,7 @@ def tabled() -> tuple[Quantity, ...]:
 
 
 def mapped() -> tuple[tuple[Quantity, Mapped], ...]:
-    """Return the quantities that are mapped, those of velocity first."""
+    """Return the quantities that are mapped, those of velocity first, of what is felt last."""
     found = [(quantity, quantity.mapped) for quantity in QUANTITIES if quantity.mapped is not None]
-    return tuple(sorted(found, key=lambda pair: pair[1].of != "velocity"))
+    order = ("velocity", "acceleration", "felt")
+    return tuple(sorted(found, key=lambda pair: order.index(pair[1].of)))

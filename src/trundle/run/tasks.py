@@ -150,7 +150,15 @@ class MapTask:
         assert plan is not None  # else it is no task of the job
         assert places is not None  # laid out with the map
         factors = list(job.factors.values())
-        return map_part(plan, laid_out.layout, places, factors, job.seed, progress=progress)
+        return map_part(
+            plan,
+            laid_out.layout,
+            places,
+            factors,
+            job.seed,
+            days=bool(job.watched),
+            progress=progress,
+        )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

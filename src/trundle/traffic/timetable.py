@@ -64,7 +64,7 @@ class Stream(Protocol):
 
     @property
     def routes(self) -> tuple[str, ...]:
-        """Names of the routes that it has passages on."""
+        """List the routes that it has passages on."""
         ...
 
     def expected(self) -> Mapping[str, Float[Array, " hours"]]:
@@ -104,7 +104,7 @@ class Times:
 
     @property
     def routes(self) -> tuple[str, ...]:
-        """Its route."""
+        """Name of its route, alone."""
         return (self.route,)
 
     def expected(self) -> Mapping[str, Float[Array, " hours"]]:
@@ -246,7 +246,7 @@ class Schedule:
 
     @property
     def routes(self) -> tuple[str, ...]:
-        """Names of all routes, each once."""
+        """List all routes, each once."""
         return tuple(dict.fromkeys(name for one in self.streams for name in one.routes))
 
     def expected(self) -> dict[str, Float[Array, " hours"]]:
@@ -259,7 +259,7 @@ class Schedule:
 
     @property
     def per_day(self) -> float:
-        """Passages a day, in the mean."""
+        """Mean number of passages a day."""
         return float(sum(counts.sum() for counts in self.expected().values()))
 
     @property

@@ -78,7 +78,7 @@ class Machine(KnownForces):
 
     @property
     def contact_names(self) -> tuple[str, ...]:
-        """Its feet."""
+        """Name of every foot."""
         if len(self.feet) == 1:
             return ("foot",)
         return tuple(f"foot {i + 1}" for i in range(len(self.feet)))
@@ -99,7 +99,13 @@ class Machine(KnownForces):
         )  # fmt: skip
 
     def way(self) -> Iterator[tuple[Float[Array, "places 2"], Float[Array, "places 2"]]]:
-        """Give its feet."""
+        """Give the places of its feet, with a direction.
+
+        Yields
+        ------
+        tuple of ndarray, shape (n_feet, 2)
+            Places [m], and unit directions.
+        """
         yield np.asarray(self.feet), np.broadcast_to([1.0, 0.0], self.feet.shape)
 
     def inputs(self, time: Float[Array, " times"], begins: float, seed: int) -> MachineInputs:

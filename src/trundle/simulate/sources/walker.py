@@ -171,7 +171,7 @@ class Walker(KnownForces):
 
     @property
     def contact_names(self) -> tuple[str, ...]:
-        """Everybody's feet."""
+        """Name of what everybody presses with."""
         if self.people == 1:
             return ("feet",)
         return tuple(f"feet {i + 1}" for i in range(self.people))
@@ -200,7 +200,13 @@ class Walker(KnownForces):
         )  # fmt: skip
 
     def way(self) -> Iterator[tuple[Float[Array, "places 2"], Float[Array, "places 2"]]]:
-        """Give places all along the way."""
+        """Give places all along the way, with directions.
+
+        Yields
+        ------
+        tuple of ndarray, shape (n_places, 2)
+            Places [m], and unit directions.
+        """
         if isinstance(self.where, StandsAt):
             yield np.array([[self.where.x, self.where.y]]), np.array([[1.0, 0.0]])
             return

@@ -9,7 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from trundle._typing import Array
-from trundle.simulate import Layout, PreparedFloor, Source, ensemble
+from trundle.simulate import Layout, PreparedFloor, Source, batches, ensemble
+from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import Passage
 from trundle.structure import Spot
 from trundle.traffic.timetable import Departures
@@ -85,17 +86,28 @@ def meeting_error(
     if not method.moves:
         return 0.0
     dt = method.integration.dt
-    both = (layouts[first].sources[0], _later(layouts[second].sources[0], round(gap / dt) * dt))
-    length = max(source.leaves for source in both) + 5.0
+    late = round(gap / dt)
+    both = (layouts[first].sources[0], _later(layouts[second].sources[0], late * dt))
+    together = ensemble(
+        floor,
+        both,
+        method=method,
+        points=points,
+        n_runs=1,
+        seed=seed,
+        duration=both[0].leaves + TAIL,
+    ).velocity[0]
+    alone = {name: _velocity(layouts[name], seed) for name in dict.fromkeys((first, second))}
+    n = len(together)
+    other = np.concatenate([np.zeros((late, together.shape[1])), alone[second]])[:n]
+    n = min(n, len(alone[first]), len(other))
+    left_out = together[:n] - alone[first][:n] - other[:n]
+    return float(np.max(_rms(left_out) / np.maximum(_rms(together[:n]), 1e-300)))
 
-    def velocity(*sources: Source) -> Array:
-        """Return what some of them give together."""
-        return ensemble(
-            floor, sources, method=method, points=points, n_runs=1, seed=seed, duration=length
-        ).velocity[0]
 
-    together, alone = velocity(*both), [velocity(one) for one in both]
-    return float(np.max(_rms(together - sum(alone)) / np.maximum(_rms(together), 1e-300)))
+def _velocity(layout: Layout, seed: int) -> Array:
+    """Return what the first run of a route alone gives at the points."""
+    return next(batches(layout, runs=range(1), seed=seed)).velocity[0]
 
 
 def _later(source: Source, by: float) -> Source:

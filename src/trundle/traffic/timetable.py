@@ -267,12 +267,34 @@ class Schedule:
         """Whether no two days are alike."""
         return any(isinstance(stream, Poisson) for stream in self.streams)
 
-    def draw(self, rng: np.random.Generator) -> Departures:
-        """Return the departures of one day."""
+    def draw(
+        self, rng: np.random.Generator, least: Mapping[str, float] | None = None
+    ) -> Departures:
+        """Return the departures of one day.
+
+        Parameters
+        ----------
+        rng : Generator
+            What random streams are drawn from.
+        least : mapping of str to float, optional
+            Least time between two departures on a route [s]: who would come sooner waits, for no
+            two vehicles are at one place. Times that are given are left as they are.
+        """
         drawn = [stream.draw(rng) for stream in self.streams]
         times = np.concatenate([one for one, _ in drawn])
         names = [name for _, some in drawn for name in some]
         order = np.argsort(times, kind="stable")
         place = {name: i for i, name in enumerate(self.routes)}
         which = np.array([place[names[i]] for i in order], dtype=np.intp)
-        return Departures(time=times[order], route=self.routes, which=which)
+        times = times[order]
+        for name, gap in (least or {}).items() if self.is_random else ():
+            mine = which == place[name]
+            times[mine] = _queued(times[mine], gap)
+        order = np.argsort(times, kind="stable")
+        return Departures(time=times[order], route=self.routes, which=which[order])
+
+
+def _queued(times: Float[Array, " n"], gap: float) -> Float[Array, " n"]:
+    """Return rising times, each put off until it is so far behind the one before [s]."""
+    spread = gap * np.arange(len(times))
+    return np.maximum.accumulate(times - spread) + spread if len(times) else times

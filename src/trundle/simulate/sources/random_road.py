@@ -11,11 +11,12 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.road import Profile, ProfileReader, Spectrum, synthesise_tracks
 from trundle.route import Along
-from trundle.simulate.sources.crossing import Crossing
+from trundle.simulate.sources.crossing import TAIL, Crossing
 
 __all__ = ["RandomRoad", "run_generator"]
 
 _MARGIN = 10.0  # m of road beyond the wheels, so that none runs off its profile
+_TURNS = 5.0  # m before its end, where a road turns back
 
 
 class RandomRoad:
@@ -30,11 +31,12 @@ class RandomRoad:
         self._along = along
         self._tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
         self._under = [np.flatnonzero(which == i) for i in range(len(self._tracks))]
-        self._extent = _road_extent(crossing, float(along.time[-1]))
+        self._extent = _road_extent(crossing)
+        station, self._way = _turned_back(along.station, self._extent[1] - _TURNS)
         _check_step(crossing, float(along.speed.max()), float(along.time[1] - along.time[0]))
         # every run's profile has the same stations
         self._readers = [
-            ProfileReader(profile.station, along.station[:, wheels])
+            ProfileReader(profile.station, station[:, wheels])
             for profile, wheels in zip(self._profiles(0), self._under, strict=True)
         ]
 
@@ -44,6 +46,7 @@ class RandomRoad:
         together = zip(self._profiles(run), self._readers, self._under, strict=True)
         for profile, reader, wheels in together:
             out[0][:, wheels], out[1][:, wheels] = reader.read(profile.elevation, profile.slope)
+        out[1] *= self._way
         return out
 
     def still(self) -> Float[Array, "2 times contacts"]:
@@ -75,17 +78,34 @@ def _check_step(crossing: Crossing, speed: float, dt: float) -> None:
         )
 
 
-def _road_extent(crossing: Crossing, duration: float) -> tuple[float, float]:
+def _road_extent(crossing: Crossing) -> tuple[float, float]:
     """Return the stations that a random road covers [m].
 
-    They do not depend on the time step or on other vehicles, so that every method drives
-    over the same road.
+    They do not depend on the time step, on the length of the record or on other vehicles, so that
+    every method drives over the same road, and a vehicle over the same one alone and with others.
     """
     reach = crossing.vehicle.length + _MARGIN
     law = crossing.route.law
     before = float(law.speed(0.0)) * crossing.run_in_time - min(0.0, crossing.lead + _MARGIN)
-    after = max(crossing.route.length, float(law.distance(max(0.0, duration - crossing.depart))))
+    driven = crossing.exit_time - crossing.depart + TAIL
+    after = max(crossing.route.length, float(law.distance(np.ceil(driven))))
     return -float(np.ceil(before + reach)), float(np.ceil(after + reach))
+
+
+def _turned_back(
+    station: Float[Array, "times contacts"], end: float
+) -> tuple[Float[Array, "times contacts"], Float[Array, "times contacts"]]:
+    """Return where on a road wheels are that drive on behind its end, and which way it then runs.
+
+    In a record that goes on long after a vehicle has left the floor, the road turns back there.
+    """
+    length = max(end - float(station.min()), 1.0)
+    beyond = np.abs((station - end + length) % (2.0 * length) - length)
+    behind = station > end
+    folded = np.where(behind, end - beyond, station)
+    # rising on the way out, falling on the way back
+    way = np.where(behind & ((station - end) % (2.0 * length) < length), -1.0, 1.0)
+    return folded, way
 
 
 def run_generator(seed: int, route_name: str, run: int) -> np.random.Generator:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from studies import BUILDING
 
+from studies import BUILDING
 from trundle.errors import InputError
 from trundle.footfall import footfall_load
 from trundle.signals import weighting_response

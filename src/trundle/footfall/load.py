@@ -50,7 +50,7 @@ class Harmonic:
     most: float = np.inf
     phase: float = 0.0
 
-    def factor(self, f: ArrayLike) -> Float[Array, "..."]:
+    def factor(self, f: ArrayLike) -> Float[Array, ...]:
         """Return the load factor at frequencies of the harmonic [Hz]."""
         held = np.clip(np.asarray(f, dtype=float), self.f_from, self.f_to)
         return np.clip(self.constant + self.slope * held, 0.0, self.most)
@@ -80,7 +80,7 @@ class Impulse:
         """Check the factor."""
         set_frozen(self, factor=positive("impulse factor", self.factor))
 
-    def size(self, pace: float, f: ArrayLike) -> Float[Array, "..."]:
+    def size(self, pace: float, f: ArrayLike) -> Float[Array, ...]:
         """Return the impulse that a mode of some frequency [Hz] gets from a step [N s]."""
         return self.factor * pace**self.pace_power / np.asarray(f, dtype=float) ** self.power
 

@@ -14,6 +14,7 @@ from jaxtyping import Float, Int
 from scipy import sparse
 
 from trundle._checks import frozen_array, set_frozen
+from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.errors import InputError
 from trundle.route import contact_rows
@@ -107,6 +108,8 @@ def footfall_floor(
     prepared: PreparedFloor,
     felt: Spots | Sequence[Spots],
     walked: Spots | Sequence[Spots] | None = None,
+    *,
+    progress: Progress | None = None,
 ) -> FootfallFloor:
     """See a prepared floor at places.
 
@@ -118,6 +121,8 @@ def footfall_floor(
         Where it is felt, vertically.
     walked : Spots, or a sequence of them, optional
         Where it is walked on. Unless given, walker and receiver are at the same place, each alone.
+    progress : callable, optional
+        Told the share of static deflections that are solved for.
 
     Raises
     ------
@@ -132,7 +137,9 @@ def footfall_floor(
     share = _rows(floor, felt if walked is None else walked)[1]
     presser = sparse.csr_array(presser.multiply(share[:, None]))
     alone = walked is None
-    residual = _residual(prepared, reader, presser, alone=alone) if prepared.residual else None
+    residual = None
+    if prepared.residual:
+        residual = _residual(prepared, reader, presser, alone=alone, progress=progress)
     square = prepared.propagator.square
     return FootfallFloor(
         omega=modes.omega,
@@ -161,7 +168,12 @@ def _rows(floor: Structure, places: Spots | Sequence[Spots]) -> tuple[SparseMatr
 
 
 def _residual(
-    prepared: FloorInModes, reader: SparseMatrix, presser: SparseMatrix, *, alone: bool
+    prepared: FloorInModes,
+    reader: SparseMatrix,
+    presser: SparseMatrix,
+    *,
+    alone: bool,
+    progress: Progress | None,
 ) -> Float[Array, "places _"]:
     """Return the flexibility of the modes left out, at places by walkers."""
     modes, n = prepared.modes, presser.shape[0]
@@ -174,4 +186,6 @@ def _residual(
             out[part, 0] = np.diag(reader[part] @ sunk) - np.sum(felt[part] * walked[part], axis=1)
         else:
             out[:, part] = reader @ sunk - felt @ walked[part].T
+        if progress is not None:
+            progress(min(1.0, (start + _COLUMNS) / n))
     return out

@@ -285,6 +285,9 @@ def test_what_is_in_doubt_is_said():
     """Paces that a guide is not for, no impulse, too few modes."""
     found = footfall_response(one_mode(4.0), footfall_load("p354"), SciRule(), paces=(1.5, 2.0))
     assert {doubt.subject for doubt in found.doubts} == {"paces", "modes"}
+    found = footfall_response(one_mode(4.6), footfall_load("dg11"), AiscBayRule())
+    said = {doubt.subject: doubt.message for doubt in found.doubts}
+    assert "harmonic 3 of 1.53 steps/s would meet it" in said["paces"]
     found = footfall_response(one_mode(4.0), footfall_load("iso-10137"), CcipRule())
     assert [doubt.subject for doubt in found.doubts] == ["impulses"]
 

@@ -31,6 +31,7 @@ __all__ = ["FootfallLevels", "FootfallResponse", "footfall_response"]
 
 _STEPS = 9  # paces at which impulses are tried: they grow smoothly with the pace
 _TOLD = 2_000_000  # numbers held at once while what governs is looked for
+_MOVES = 0.05  # of the largest product of squared shapes, above which a mode is spoken of
 _DOSE = 0.68  # of the RMS times the fourth root of the time (SCI P354; BS 6472-1 has 1.4 at most)
 
 
@@ -259,6 +260,7 @@ def _doubts(
             message=f"{load.title}: it is for {load.paces[0]:g} to {load.paces[1]:g} steps/s; "
             f"from {low:g} to {high:g} its load factors are held at their ends",
         )
+    yield from _missed(floor, load, low, high)
     first, last = floor.frequencies[0], floor.frequencies[-1]
     if load.impulse is None:
         yield FitnessWarning(
@@ -271,4 +273,23 @@ def _doubts(
             subject="modes",
             message=f"modes to {last:.3g} Hz are kept; the guides ask for those to twice the "
             "first frequency or more in transients: raise f_max",
+        )
+
+
+def _missed(
+    floor: FootfallFloor, load: FootfallLoad, low: float, high: float
+) -> Iterator[FitnessWarning]:
+    """Name the first mode that moves and lies between two harmonics of the paces."""
+    f, numbers = floor.frequencies[:, None], np.arange(1, len(load.harmonics) + 1)
+    hit = ((f >= low * numbers) & (f <= high * numbers)).any(axis=1)
+    size = np.max(floor.felt**2, axis=0) * np.max(floor.walked**2, axis=0)
+    between = (f[:, 0] > high) & (f[:, 0] < low * numbers[-1]) & ~hit
+    found = np.flatnonzero(between & (size > _MOVES * size.max()))
+    if found.size:
+        first = float(f[found[0], 0])
+        number = int(np.ceil(first / high))
+        yield FitnessWarning(
+            subject="paces",
+            message=f"the mode at {first:.3g} Hz lies between harmonics of {low:g} to {high:g} "
+            f"steps/s; harmonic {number} of {first / number:.3g} steps/s would meet it",
         )

@@ -279,6 +279,8 @@ def test_the_dose_is_that_of_p354():
     rms = 0.005 * found.governing.level
     assert one[0] == pytest.approx(0.68 * rms[0] * 10.0**0.25, rel=1e-12)
     assert found.dose(10.0, 16.0)[0] == pytest.approx(2.0 * one[0], rel=1e-12)
+    with pytest.raises(InputError, match="has no vibration dose"):
+        footfall_response(one_mode(4.0), footfall_load("dg11"), AiscBayRule()).dose(1.0, 1.0)
 
 
 def test_what_is_in_doubt_is_said():

@@ -10,10 +10,11 @@ import numpy as np
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
-from trundle.footfall import FOOTFALLS, footfall_load
+from trundle.footfall import FOOTFALLS
 from trundle.report.pages.footfall import footfall_summary, write_footfall
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.run.footfall import FootfallAsked, StudyFootfall, study_footfall
+from trundle.simulate import footfall_rule
 from trundle.study_file.build import load_study
 from trundle.units import to_si
 from trundle.views.footfall import FootfallDose, level_words, worst_rows
@@ -107,8 +108,10 @@ def _dose(options: FootfallOptions) -> FootfallDose | None:
         return None
     if options.passages is None or not options.duration:
         raise InputError("--passages and --duration go together: 300 passages of '10 s' each")
-    if footfall_load(options.guide).name == "dg11":
-        raise InputError("--passages: dg11 gives a peak acceleration, which has no dose")
+    if footfall_rule(options.guide).quantity != "response_factor":
+        raise InputError(
+            f"--passages: {options.guide} gives a peak acceleration, which has no dose: leave out"
+        )
     if not 0.0 < options.passages < np.inf:
         raise InputError(f"--passages {options.passages:g}: must be greater than 0")
     duration = _quantity("--duration", options.duration, "time")

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from jaxtyping import Float
 
 from trundle._progress import Progress, Tell, silent
+from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 from trundle.footfall import footfall_load
 from trundle.run.mode_cache import modes_of
@@ -82,13 +85,20 @@ class StudyFootfall:
             if end > start:
                 yield grid, slice(start, end)
 
+    @cached_property
+    def xy(self) -> Float[Array, "places 2"]:
+        """Where all places are in plan [m]."""
+        return np.concatenate([grid.xy for grid in self.grids])
+
+    @cached_property
+    def labels(self) -> list[str]:
+        """The surface of every place; empty for the only one."""
+        return [grid.label for grid in self.grids for _ in range(len(grid.spots))]
+
     def where(self, place: int) -> tuple[float, float, str]:
-        """Return where one of all places is in plan [m], and its surface; empty for the only."""
-        for grid, part in self.parts():
-            if place < part.stop:
-                x, y = grid.xy[place - part.start]
-                return float(x), float(y), grid.label
-        raise IndexError(place)
+        """Return where one of all places is in plan [m], and its surface."""
+        x, y = self.xy[place]
+        return float(x), float(y), self.labels[place]
 
 
 def study_footfall(study: Study, asked: FootfallAsked, *, tell: Tell = silent) -> StudyFootfall:

@@ -7,7 +7,6 @@ step is an impulse that has died away, or not, when the next one comes. The guid
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,8 +15,10 @@ from jaxtyping import Complex, Float, Int
 
 from trundle._progress import Progress
 from trundle._typing import Array
-from trundle.errors import FitnessWarning
+from trundle.errors import FitnessWarning, InputError
 from trundle.footfall import FootfallLoad
+from trundle.signals import BASE_ACCELERATION
+from trundle.simulate.spectral.footfall_doubts import footfall_doubts
 from trundle.simulate.spectral.footfall_floor import FootfallFloor
 from trundle.simulate.spectral.footfall_rules import FootfallQuantity, FootfallRule
 from trundle.simulate.spectral.footfall_terms import (
@@ -31,8 +32,7 @@ __all__ = ["FootfallLevels", "FootfallResponse", "footfall_response"]
 
 _STEPS = 9  # paces at which impulses are tried: they grow smoothly with the pace
 _TOLD = 2_000_000  # numbers held at once while what governs is looked for
-_MOVES = 0.05  # of the largest product of squared shapes, above which a mode is spoken of
-_DOSE = 0.68  # of the RMS times the fourth root of the time (SCI P354; BS 6472-1 has 1.4 at most)
+_DOSE = 0.68  # of the RMS: intermittent walking, SCI P354; steady motion has 1.4 in BS 6472-1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -125,8 +125,15 @@ class FootfallResponse:
             Of one passage [s].
         passages : float
             How many there are.
+
+        Raises
+        ------
+        InputError
+            Levels are peak accelerations.
         """
-        rms = 0.005 * self.governing.level
+        if self.quantity != "response_factor":
+            raise InputError(f"{self.load.title}: a peak acceleration has no vibration dose")
+        rms = BASE_ACCELERATION * self.governing.level
         return _DOSE * rms * (passages * duration) ** 0.25
 
 
@@ -177,7 +184,7 @@ def footfall_response(
         paces=tried,
         steady=_largest(floor, tried, work, told),
         transient=_largest(floor, stepped, impulses, told) if impulses else None,
-        doubts=tuple(_doubts(floor, load, low, high)),
+        doubts=tuple(footfall_doubts(floor, load, low, high)),
     )
 
 
@@ -248,48 +255,3 @@ def _parts(
     """Return what each mode gives to each part of the level at some places."""
     pairs = floor.felt[places] * floor.walked[walkers]
     return pairs[:, None, :] * terms.named
-
-
-def _doubts(
-    floor: FootfallFloor, load: FootfallLoad, low: float, high: float
-) -> Iterator[FitnessWarning]:
-    """Give what a report must say."""
-    if low < load.paces[0] - 1e-9 or high > load.paces[1] + 1e-9:
-        yield FitnessWarning(
-            subject="paces",
-            message=f"{load.title}: it is for {load.paces[0]:g} to {load.paces[1]:g} steps/s; "
-            f"from {low:g} to {high:g} its load factors are held at their ends",
-        )
-    yield from _missed(floor, load, low, high)
-    first, last = floor.frequencies[0], floor.frequencies[-1]
-    if load.impulse is None:
-        yield FitnessWarning(
-            subject="impulses",
-            message=f"{load.title}: it gives no impulse of a step; floors whose first frequency "
-            f"is above {load.highest(high):.3g} Hz are hardly excited by it",
-        )
-    elif last < 2.0 * max(first, load.highest(high)):
-        yield FitnessWarning(
-            subject="modes",
-            message=f"modes to {last:.3g} Hz are kept; the guides ask for those to twice the "
-            "first frequency or more in transients: raise f_max",
-        )
-
-
-def _missed(
-    floor: FootfallFloor, load: FootfallLoad, low: float, high: float
-) -> Iterator[FitnessWarning]:
-    """Name the first mode that moves and lies between two harmonics of the paces."""
-    f, numbers = floor.frequencies[:, None], np.arange(1, len(load.harmonics) + 1)
-    hit = ((f >= low * numbers) & (f <= high * numbers)).any(axis=1)
-    size = np.max(floor.felt**2, axis=0) * np.max(floor.walked**2, axis=0)
-    between = (f[:, 0] > high) & (f[:, 0] < low * numbers[-1]) & ~hit
-    found = np.flatnonzero(between & (size > _MOVES * size.max()))
-    if found.size:
-        first = float(f[found[0], 0])
-        number = int(np.ceil(first / high))
-        yield FitnessWarning(
-            subject="paces",
-            message=f"the mode at {first:.3g} Hz lies between harmonics of {low:g} to {high:g} "
-            f"steps/s; harmonic {number} of {first / number:.3g} steps/s would meet it",
-        )

@@ -110,7 +110,7 @@ def _dose(options: FootfallOptions) -> FootfallDose | None:
         raise InputError("--passages and --duration go together: 300 passages of '10 s' each")
     if footfall_rule(options.guide).quantity != "response_factor":
         raise InputError(
-            f"--passages: {options.guide} gives a peak acceleration, which has no dose: leave out"
+            f"--passages: {options.guide} gives a peak acceleration, which has no dose"
         )
     if not 0.0 < options.passages < np.inf:
         raise InputError(f"--passages {options.passages:g}: must be greater than 0")

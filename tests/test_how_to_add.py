@@ -236,7 +236,7 @@ ENTRIES = {
         heading="mean square velocity",
         measure=lambda h: np.mean(h.velocity**2, axis=1),
         mapped=Mapped(
-            of="velocity", measure=lambda v: np.mean(v**2, axis=-1), figure="map_square",
+            of="velocity", measure=lambda v, _: np.mean(v**2, axis=-1), figure="map_square",
             title="Mean square velocity over the floor", word="mean square",
         ),
     ),

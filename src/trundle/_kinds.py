@@ -122,10 +122,10 @@ def _options(hint: Any) -> tuple[Any, ...]:
 def _fits(value: object, wanted: Any) -> bool | None:
     """Return whether a value is of a kind; None where that is not looked at."""
     origin = typing.get_origin(wanted) or wanted
-    if not isinstance(origin, type) or origin.__module__.startswith(("jaxtyping", "numpy")):
+    if origin is Any or not isinstance(origin, type):  # Any is a class that refuses to be asked
         return None
     numbers = origin in {int, float, complex, bool, object} or issubclass(origin, np.ndarray)
-    if numbers or origin.__module__.startswith("scipy"):
+    if numbers or origin.__module__.startswith(("jaxtyping", "numpy", "scipy")):
         return None  # numbers are checked with their bounds, arrays with their shapes
     if getattr(origin, "_is_protocol", False):
         members = [name for name in dir(origin) if not name.startswith("_")]

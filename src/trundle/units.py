@@ -45,6 +45,8 @@ DIMENSIONS: dict[str, tuple[str, str]] = {
     "pressure": ("kg/m/s**2", "30 GPa"),
     "load": ("kg/m/s**2", "3 kN/m2"),
     "force": ("kg*m/s**2", "26 kN"),
+    "impulse": ("kg*m/s", "30 N s"),
+    "unbalance": ("kg*m", "500 g mm"),
     "stiffness": ("kg/s**2", "14700 N/cm"),
     "stiffness per metre": ("kg/m/s**2", "50 MN/m/m"),
     "rotational stiffness": ("kg*m**2/s**2", "20 MN m/rad"),
@@ -74,6 +76,7 @@ _CYCLIC = ("frequency", "wavenumber")
 _UNIT_CHARACTERS = re.compile(r"^[A-Za-zµμ%/*^()·\s\d²³-]*$")
 # in a unit of motion g is gravity, not a gram, and mg a thousandth of it
 _GRAVITY = re.compile(r"\b(?P<prefix>[muµμ]?)gn?\b")
+_TURNS = re.compile(r"^(rpm|r/min)$", re.IGNORECASE)
 # a power of a power, or a large one: a parser would work on m**9**9**9 for ever
 _TOWER = re.compile(
     r"(?:\*\*|\^)\s*[(+-]*\d{2,}|(?:\*\*|\^)[^A-Za-z/]*?\d\s*\)*\s*(?:\*\*|\^)|\d{6,}"
@@ -141,6 +144,8 @@ def _factor(unit: str, unit_si: str, dimension: str, example: str) -> float:
         raise InputError(f"a {dimension} counts cycles, not radians; divide by 2 pi: {example!r}")
     spelled = unit.replace("·", "*").replace("²", "**2").replace("³", "**3").replace("^", "**")
     spelled = _POWER.sub(r"**\1", spelled)
+    if dimension == "frequency":  # a parser makes radians of a turn
+        spelled = _TURNS.sub("1/minute", spelled)
     if dimension == "acceleration":
         spelled = _GRAVITY.sub(r"\g<prefix>standard_gravity", spelled)
     try:

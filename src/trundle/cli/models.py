@@ -1,4 +1,4 @@
-"""Offer the commands that sum up, hand on and look at a model, whoever made it."""
+"""Offer the commands that sum up, hand on, look at and shake a model, whoever made it."""
 
 from __future__ import annotations
 
@@ -119,3 +119,68 @@ def view(
 
     wanted = Wanted(f_max=f_max, case=case, road=road, method=method, units=units, frames=frames)
     view_command.view(source, out, wanted=wanted, crossing=not no_crossing, quiet=quiet)
+
+
+@models.command()
+def transfer(
+    study: Annotated[Path, typer.Argument(help="Study file (TOML).", metavar="STUDY")],
+    *,
+    loads: Annotated[
+        list[str],
+        typer.Option(
+            "--from",
+            metavar="PLACE",
+            help="Where a force acts: a point of the study by its name, or '3 m, 4.5 m' in plan, "
+            "'3 m, 4.5 m @ deck' where there are several surfaces. May be given several times.",
+        ),
+    ],
+    points: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--to",
+            metavar="PLACE",
+            help="Where motion is read, likewise. \\[default: all points of the study]",
+        ),
+    ] = None,
+    method: Annotated[
+        str, typer.Option("--method", help="By which method. \\[default: the one assessed]")
+    ] = "",
+    f_min: Annotated[str, typer.Option("--f-min", help="Lowest frequency.")] = "1 Hz",
+    f_max: Annotated[
+        str,
+        typer.Option("--f-max", help="Highest. \\[default: 80 Hz, or as far as the method shows]"),
+    ] = "",
+    lines: Annotated[int, typer.Option("--lines", min=2, max=100_000, help="How many.")] = 800,
+    quantity: Annotated[
+        str, typer.Option("--quantity", help="receptance, mobility or accelerance.")
+    ] = "mobility",
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="Table to write: FILE.csv.")
+    ] = None,
+    figure: Annotated[
+        Path | None, typer.Option("--figure", help="Picture to write: FILE.png, .svg or .pdf.")
+    ] = None,
+    as_json: options.Json = False,
+    quiet: options.Quiet = False,
+) -> None:
+    """Say what a force at one place does at another: a machine here, a tool there.
+
+    Displacement (receptance), velocity (mobility) or acceleration (accelerance) over force, by the
+    modes and the damping of a method of the study. Force and motion are up, or along the axis of a
+    point that is read level. The largest peaks of each pair are printed.
+    """
+    from trundle.cli import transfer_command
+    from trundle.cli.show import show_of
+
+    asked = transfer_command.Asked(
+        loads=loads,
+        points=points or (),
+        method=method,
+        f_min=f_min,
+        f_max=f_max,
+        lines=lines,
+        quantity=quantity,
+        out=out,
+        figure=figure,
+    )
+    transfer_command.transfer(study, asked, show=show_of(as_json=as_json, quiet=quiet))

@@ -7,6 +7,7 @@ import numpy as np
 from trundle.cli.screen import print_table
 from trundle.criteria import Verdict
 from trundle.results.study_result import StudyResult
+from trundle.views.days import day_views, together_lines
 from trundle.views.printed import bound_rows, comparison_rows
 from trundle.views.tables import exact_rows, summary_headings, summary_rows
 from trundle.views.verdicts import verdict_matrix
@@ -46,6 +47,8 @@ def print_result(result: StudyResult) -> None:
         )
     _print_exact(result)
     _print_verdicts(result)
+    _print_together(result)
+    _print_days(result)
 
 
 def _titled(result: StudyResult, name: str, title: str) -> str:
@@ -147,6 +150,33 @@ def _print_verdicts(result: StudyResult) -> None:
     for reason in dict.fromkeys(reasons):
         print(f"not assessed: {reason}")
     print("? a pass whose 95 % interval reaches below 1: more runs might fail it")
+
+
+def _print_together(result: StudyResult) -> None:
+    lines = together_lines(result)
+    if not lines:
+        return
+    print_table(
+        "Sources together and alone: margins, and who governs",
+        ("case", "road", "point", "criterion", "together", "by energy", "alone", "governed by"),
+        (
+            (x.case, x.road, x.point, x.criterion, x.together, x.energy, x.alone, x.governs)
+            for x in lines
+        ),
+        text_columns=4,
+    )
+
+
+def _print_days(result: StudyResult) -> None:
+    for day in day_views(result):
+        print_table(
+            f"{day.key.schedule}, road {day.key.road}: above each criterion, expected with 95 % "
+            "intervals, and on one day that was run",
+            ("point", "criterion", "events a day", "minutes a day", "on 95 % of days", "day run"),
+            ((x.point, x.criterion, x.events, x.minutes, x.days, x.run) for x in day.lines),
+            text_columns=2,
+        )
+        print(f"{day.passages}; {day.meeting}")
 
 
 def _outcome(verdict: Verdict) -> str:

@@ -13,6 +13,7 @@ from trundle.criteria.curve import (
     shaped,
 )
 from trundle.criteria.verdict import BandOutcomes, Status, Verdict
+from trundle.criteria.watched import watched
 
 __all__ = [
     "BY_FREQUENCY",
@@ -33,4 +34,5 @@ __all__ = [
     "find_criterion",
     "shaped",
     "spectra_asked_for",
+    "watched",
 ]

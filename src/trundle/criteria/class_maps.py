@@ -19,7 +19,7 @@ from trundle.simulate import Coverage
 
 __all__ = ["ClassMap", "class_map", "envelope_of"]
 
-_MAPPED = ("band_rms_velocity", "peak_acceleration")
+_MAPPED = ("band_rms_velocity", "peak_acceleration", "response_factor")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -132,7 +132,7 @@ def class_map(
     found = [
         _by_band(floor, levels, c, reach)
         if c.quantity == "band_rms_velocity"
-        else _by_peak(floor, c, percentile, min(f_max, reach.excited_to) if reach.left else 0.0)
+        else _by_number(floor, c, percentile, min(f_max, reach.excited_to) if reach.left else 0.0)
         for c in some
     ]
     shape = (len(some), len(floor.places))
@@ -196,17 +196,17 @@ def _by_band(
     )
 
 
-def _by_peak(
+def _by_number(
     floor: FloorMap, criterion: Criterion, percentile: float, f_max: float
 ) -> tuple[Array, Array, Array, bool]:
-    limit = float(criterion.limits[0])
-    if np.isnan(floor.peak_acceleration).any():
+    limit, numbers = float(criterion.limits[0]), floor.numbers[criterion.quantity]
+    if np.isnan(numbers).any():
         nothing = np.full(len(floor.places), np.nan)
         return nothing, nothing, nothing, False
-    value = np.percentile(floor.peak_acceleration, percentile, axis=0)
+    value = np.percentile(numbers, percentile, axis=0)
     margin = limit / np.maximum(value, np.finfo(float).tiny)
-    above = (floor.peak_acceleration > limit).mean(axis=0)
-    moves = floor.peak_acceleration.max(axis=0) > STILL
+    above = (numbers > limit).mean(axis=0)
+    moves = numbers.max(axis=0) > STILL
     reach = min(float(criterion.frequencies[-1]), TOP_FREQUENCY)
     return (
         np.where(moves, margin, np.nan),

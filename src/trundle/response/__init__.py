@@ -5,6 +5,7 @@ from trundle.response.floor_maps import FloorMap, floor_map
 from trundle.response.isolated import behind_isolators
 from trundle.response.level_doubts import few_runs_warnings, level_warnings
 from trundle.response.measured import reduce_record
+from trundle.response.meter import CurveLimit, Meter, Reading
 from trundle.response.peaks import LargestValues
 from trundle.response.quantities import QUANTITIES, Quantity, tabled
 from trundle.response.reduction import (
@@ -26,10 +27,13 @@ from trundle.response.statistics import ExactStatistics, exact_statistics
 __all__ = [
     "QUANTITIES",
     "BandSpectra",
+    "CurveLimit",
     "ExactStatistics",
     "FloorMap",
     "LargestValues",
+    "Meter",
     "Quantity",
+    "Reading",
     "RunLevels",
     "SpectrumQuantity",
     "UpperBounds",

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Complex, Float
@@ -14,19 +14,24 @@ from trundle._checks import one_of
 from trundle._progress import Progress
 from trundle._threads import n_threads
 from trundle._typing import Array
+from trundle.response.meter import CurveLimit
 from trundle.response.quantities import mapped
 from trundle.signals import (
+    BASE_ACCELERATION,
     Averaging,
     band_edges,
     band_filter,
     mid_band_frequencies,
+    running_rms,
     usable_bands,
+    weighting_response,
 )
 from trundle.simulate import PlaceResponses, place_spectra
 
 __all__ = ["FloorMap", "floor_map"]
 
 _WINDOW = 1.0  # s
+_SINGLE = {"response_factor": ("felt", BASE_ACCELERATION)}  # read of one running level
 _BELOW, _ABOVE = 2.2, 1.8  # times a band's mid-frequency, beyond which its filter passes nothing
 _EDGE = 1.3  # times its mid-frequency: where what a filter passes of its own band ends
 _WIDTH = 0.65  # times its mid-frequency: samples a second of an envelope
@@ -52,6 +57,9 @@ class FloorMap:
         RMS velocity in one-third octaves [m/s]; NaN in bands that are not resolved.
     numbers : mapping of str to ndarray, shape (n_runs, n_places)
         Quantities that are mapped, by their names; NaN where one was not asked for.
+    above : mapping of str to ndarray, shape (n_runs, n_places)
+        For how long the running level of 1 s lies above each curve that is watched [s], by its
+        name; NaN of a curve that a map has no running level for.
     """
 
     places: Float[Array, "places 2"]
@@ -60,6 +68,7 @@ class FloorMap:
     averaging: Averaging
     band_levels: Float[Array, "runs places bands"]
     numbers: Mapping[str, Array]
+    above: Mapping[str, Array] = field(default_factory=dict[str, Array])
 
     @property
     def n_runs(self) -> int:
@@ -82,6 +91,7 @@ class FloorMap:
             self,
             band_levels=self.band_levels[runs],
             numbers={name: values[runs] for name, values in self.numbers.items()},
+            above={name: values[runs] for name, values in self.above.items()},
         )
 
 
@@ -92,7 +102,9 @@ def floor_map(
     f_max: float,
     averaging: Averaging = "max_1s",
     peaks: bool = True,
+    people: bool = False,
     every_step: bool = False,
+    curves: Sequence[CurveLimit] = (),
     progress: Progress | None = None,
 ) -> FloorMap:
     """Map the response to contact forces over a floor.
@@ -110,9 +122,14 @@ def floor_map(
         ``event`` divides their energy by its length.
     peaks : bool
         Whether peak accelerations are wanted; they take half as long again.
+    people : bool
+        Whether what people feel is wanted: response factors and doses; as long again as peaks.
     every_step : bool
         Move the window of the largest 1 s average by time steps instead of 1/20 s: several times
         slower, and equal to histories.
+    curves : sequence of CurveLimit
+        Curves above which time is counted, in steps of 1/20 s; those of velocity in bands, of
+        response factors, if what people feel is wanted.
     progress : callable, optional
         Told the share done.
 
@@ -131,22 +148,26 @@ def floor_map(
     levels = np.full((n_runs, n_places, len(mid_band)), np.nan, dtype=kind)
     numbers = {quantity.name: np.full((n_runs, n_places), np.nan) for quantity, _ in mapped()}
     lines = _Lines(responses, mid_band[resolved], averaging, every_step=every_step)
+    lines.watch(curves, resolved)
+    wanted = {"velocity", *(["acceleration"] * peaks), *(["felt"] * people)}
+    above = {curve.name: np.full((n_runs, n_places), np.nan) for curve in curves}
     with ThreadPoolExecutor(n_threads()) as pool:
-        spectra = place_spectra(responses, forces, acceleration=peaks, progress=progress)
+        spectra = place_spectra(responses, forces, acceleration=peaks or people, progress=progress)
         for places, runs, velocity, acceleration in spectra:
 
             def reduce(
                 run: int, velocity: Array = velocity, acceleration: Array | None = acceleration
-            ) -> tuple[dict[str, Array], Array]:
+            ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
                 """Reduce one run; its lines stay in cache."""
-                return lines.reduced(
-                    velocity[run], None if acceleration is None else acceleration[run]
-                )
+                accelerated = None if acceleration is None else acceleration[run]
+                return lines.reduced(velocity[run], accelerated, wanted)
 
             found = list(pool.map(reduce, range(len(velocity))))
             for name in found[0][0]:
                 numbers[name][runs, places] = [one[0][name] for one in found]
             levels[runs, places, resolved] = [one[1] for one in found]
+            for name in found[0][2]:
+                above[name][runs, places] = [one[2][name] for one in found]
     return FloorMap(
         places=responses.places,
         mid_band=mid_band,
@@ -154,6 +175,7 @@ def floor_map(
         averaging=averaging,
         band_levels=levels,
         numbers=numbers,
+        above=above,
     )
 
 
@@ -164,6 +186,8 @@ class _Lines:
         self, responses: PlaceResponses, mid_band: Array, averaging: Averaging, *, every_step: bool
     ) -> None:
         self._n, self._n_steps = responses.n_padded, responses.n_steps
+        self._fs, self._watched = 1.0 / responses.dt, list[tuple[CurveLimit, Array]]()
+        self._felt = weighting_response("Wb", responses.frequencies)
         self._averaging = one_of("averaging", averaging, ("event", "max_1s"))
         kind = np.complex64 if responses.single else np.complex128
         lines, fs = responses.frequencies, 1.0 / responses.dt
@@ -183,21 +207,59 @@ class _Lines:
             for f, response in zip(mid_band, filters, strict=True)
         ]
 
+    def watch(self, curves: Sequence[CurveLimit], resolved: Bool[Array, " bands"]) -> None:
+        """Count the time above some curves too, with limits by the bands that are resolved."""
+        of_bands = "band_rms_velocity"
+        self._watched = [
+            (curve, curve.limits[resolved] if curve.quantity == of_bands else curve.limits)
+            for curve in curves
+            if curve.is_read and curve.quantity in (of_bands, *_SINGLE)
+        ]
+
     def reduced(
-        self, rows: Complex[Array, "places lines"], acceleration: Array | None
-    ) -> tuple[dict[str, Array], Array]:
-        """Return the quantities of one run by name, and its band levels."""
+        self, rows: Complex[Array, "places lines"], acceleration: Array | None, wanted: set[str]
+    ) -> tuple[dict[str, Array], Array, dict[str, Array]]:
+        """Return the quantities of one run by name, its band levels, and times above curves."""
         numbers: dict[str, Array] = {}
-        for of, lines in (("velocity", rows), ("acceleration", acceleration)):
-            if lines is not None:
-                record = self._record(lines)
-                here = ((quantity, how) for quantity, how in mapped() if how.of == of)
-                numbers |= {quantity.name: how.measure(record) for quantity, how in here}
+        records = {"velocity": self._record(rows)}
+        if acceleration is not None:
+            records["acceleration"] = self._record(acceleration)
+        if acceleration is not None and "felt" in wanted:
+            records["felt"] = self._record(acceleration * self._felt)
+        for quantity, how in mapped():
+            if how.of in wanted:
+                numbers[quantity.name] = how.measure(records[how.of], self._fs)
+        squares = list(self._squares(rows))
         if self._averaging == "event":
             bands = np.sqrt((np.real(rows) ** 2 + np.imag(rows) ** 2) @ self._weights)
         else:
-            bands = np.stack([band.largest(rows) for band in self._bands], axis=-1)
-        return numbers, bands
+            bands = np.stack([np.sqrt(s.max(axis=-1)) for s in squares], axis=-1)
+        return numbers, bands, self._above(squares, records)
+
+    def _squares(self, rows: Array) -> Iterator[Float[Array, "places windows"]]:
+        """Give the running mean square in every band, where anybody asks for it."""
+        if self._averaging != "event" or self._watched:
+            for band in self._bands:
+                yield band.squares(rows)
+
+    def _above(
+        self, squares: list[Array], records: Mapping[str, Array]
+    ) -> dict[str, Float[Array, " places"]]:
+        """Return for how long running levels lie above the curves that are watched [s]."""
+        out: dict[str, Float[Array, " places"]] = {}
+        n = round(self._n / self._fs * _LEAST_RATE)
+        for curve, limits in self._watched:
+            if curve.quantity in _SINGLE:
+                of, base = _SINGLE[curve.quantity]
+                if of in records:
+                    out[curve.name] = _time_above(records[of], self._fs, base * limits[0])
+                continue
+            above = np.zeros((len(records["velocity"]), n), dtype=bool)
+            for band in np.flatnonzero(np.isfinite(limits)):
+                size = squares[band].shape[-1]
+                above |= squares[band][:, np.arange(n) * size // n] > limits[band] ** 2
+            out[curve.name] = above.sum(axis=-1) / _LEAST_RATE
+        return out
 
     def _record(self, rows: Complex[Array, "places lines"]) -> Float[Array, "places steps"]:
         """Return the history over the record, without what rings behind it."""
@@ -214,8 +276,8 @@ class _Band:
     width: int  # samples in a second
     real: bool
 
-    def largest(self, rows: Array) -> Array:
-        """Return the largest 1 s average, (places,)."""
+    def squares(self, rows: Array) -> Float[Array, "places windows"]:
+        """Return the mean square over the second from each sample on."""
         part = rows[:, self.lines] * self.response
         if self.real:
             whole = np.zeros((len(part), self.size // 2 + 1), dtype=part.dtype)
@@ -224,7 +286,13 @@ class _Band:
         else:
             envelope = fft.ifft(_folded(part, self.size), axis=-1, norm="forward")
             square = np.real(envelope) ** 2 + np.imag(envelope) ** 2
-        return np.sqrt(_window_sums(square, self.width).max(axis=-1) / self.width)
+        return _window_sums(square, self.width) / self.width
+
+
+def _time_above(record: Array, fs: float, limit: float) -> Float[Array, " places"]:
+    """Return for how long the running RMS of 1 s of a record lies above a limit [s]."""
+    longer = np.pad(record, ((0, 0), (0, round(fs))))
+    return (running_rms(longer, fs) > limit).sum(axis=-1) / fs
 
 
 def _window_sums(samples: Array, width: int) -> Array:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from trundle._typing import Array
-from trundle.signals import mtvv, vibration_dose_value
+from trundle.signals import BASE_ACCELERATION, mtvv, vibration_dose_value
 
 __all__ = ["QUANTITIES", "Histories", "Mapped", "Quantity", "mapped", "tabled"]
 
@@ -37,6 +37,9 @@ class Histories:
         Weighted acceleration whose response factor is 1 [m/s2].
     contact_forces : ndarray of float, shape (n_runs, n_steps, n_contacts)
         Forces on the floor, positive when pressing [N].
+    lifts : ndarray of bool, shape (n_contacts,)
+        Which contacts would leave the floor rather than pull: wheels; not what forces given about
+        a weight act at.
     """
 
     time: Float[Array, " steps"]
@@ -46,6 +49,7 @@ class Histories:
     felt: Float[Array, "runs points felt"]
     base: Float[Array, " points"]
     contact_forces: Float[Array, "runs all contacts"]
+    lifts: Bool[Array, " contacts"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,11 +58,12 @@ class Mapped:
 
     Attributes
     ----------
-    of : {"velocity", "acceleration"}
-        Motion that it is measured on; acceleration is mapped where it is asked for.
+    of : {"velocity", "acceleration", "felt"}
+        Motion that it is measured on; acceleration, and what is felt of it (weighted by Wb), are
+        mapped where they are asked for.
     measure : callable
-        Takes the motion of some places over the record, shape (n_places, n_steps); returns an
-        array of shape (n_places,).
+        Takes the motion of some places over the record, shape (n_places, n_steps), and the steps a
+        second; returns an array of shape (n_places,).
     figure : str
         What its picture is called.
     title : str
@@ -67,8 +72,8 @@ class Mapped:
         What it is called beside the pointer.
     """
 
-    of: Literal["velocity", "acceleration"]
-    measure: Callable[[Float[Array, "places steps"]], Float[Array, " places"]]
+    of: Literal["velocity", "acceleration", "felt"]
+    measure: Callable[[Float[Array, "places steps"], float], Float[Array, " places"]]
     figure: str
     title: str
     word: str
@@ -116,7 +121,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         heading="peak acceleration",
         mapped=Mapped(
             of="acceleration",
-            measure=lambda a: np.maximum(a.max(axis=-1), -a.min(axis=-1)),
+            measure=lambda a, _: np.maximum(a.max(axis=-1), -a.min(axis=-1)),
             figure="map_peak",
             title="Peak acceleration over the floor",
             word="peak",
@@ -137,7 +142,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         heading="record RMS velocity",
         mapped=Mapped(
             of="velocity",
-            measure=lambda v: np.sqrt(np.mean(v**2, axis=-1)),
+            measure=lambda v, _: np.sqrt(np.mean(v**2, axis=-1)),
             figure="map_rms",
             title="RMS velocity over the floor",
             word="record RMS",
@@ -149,6 +154,13 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="1",
         long_name="largest 1 s RMS of weighted acceleration over the base curve",
         stored=False,
+        mapped=Mapped(
+            of="felt",
+            measure=lambda a, fs: mtvv(a, fs) / BASE_ACCELERATION,
+            figure="map_response_factor",
+            title="Response factor R over the floor",
+            word="R",
+        ),
         measure=lambda h: mtvv(h.felt, h.sampling_frequency) / h.base,
     ),
     Quantity(
@@ -156,7 +168,21 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="m/s1.75",
         long_name="vibration dose value of one event",
         stored=False,
+        mapped=Mapped(
+            of="felt",
+            measure=vibration_dose_value,
+            figure="map_vdv",
+            title="Vibration dose value of one event over the floor",
+            word="VDV",
+        ),
         measure=lambda h: vibration_dose_value(h.felt, h.sampling_frequency),
+    ),
+    Quantity(
+        name="weighted_rms",
+        units="m/s2",
+        long_name="RMS of weighted acceleration over the record",
+        stored=False,
+        measure=lambda h: np.sqrt(np.mean(h.felt**2, axis=-1)),
     ),
     Quantity(
         name="peak_contact_force",
@@ -171,7 +197,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         long_name="whether a contact would have had to pull: it would have left the floor",
         per="contact",
         stored=False,
-        measure=lambda h: np.any(h.contact_forces < 0.0, axis=1),
+        measure=lambda h: np.any(h.contact_forces < 0.0, axis=1) & h.lifts,
     ),
 )
 """All of them, in the order of tables."""
@@ -183,6 +209,7 @@ def tabled() -> tuple[Quantity, ...]:
 
 
 def mapped() -> tuple[tuple[Quantity, Mapped], ...]:
-    """Return the quantities that are mapped, those of velocity first."""
+    """Return the quantities that are mapped, those of velocity first, of what is felt last."""
     found = [(quantity, quantity.mapped) for quantity in QUANTITIES if quantity.mapped is not None]
-    return tuple(sorted(found, key=lambda pair: pair[1].of != "velocity"))
+    order = ("velocity", "acceleration", "felt")
+    return tuple(sorted(found, key=lambda pair: order.index(pair[1].of)))

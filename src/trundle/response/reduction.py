@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -12,12 +12,14 @@ from scipy import stats
 from trundle._checks import within
 from trundle._kinds import kinds_checked
 from trundle._typing import Array, ArrayLike
+from trundle.response.meter import CurveLimit, Meter
 from trundle.response.quantities import QUANTITIES, Histories
 from trundle.response.spectra import BandSpectra, SpectrumQuantity, spectra_of
 from trundle.signals import (
     BASE_ACCELERATION,
     BASE_SIDEWAYS,
     Averaging,
+    mid_band_frequencies,
     weight,
 )
 from trundle.simulate import MeanResponse, Runs
@@ -39,11 +41,15 @@ class RunLevels:
         One-third-octave velocity levels [m/s].
     more : mapping of str to BandSpectra
         Other spectra that were asked for, by their quantity.
+    above : mapping of str to ndarray, shape (n_runs, n_points)
+        For how long the running level of 1 s lay above each curve that was watched [s], by its
+        name; NaN of a curve without a running level.
     """
 
     numbers: Mapping[str, Array]
     spectra: BandSpectra
     more: Mapping[SpectrumQuantity, BandSpectra]
+    above: Mapping[str, Array] = field(default_factory=dict[str, Array])
 
     @property
     def peak_acceleration(self) -> Float[Array, "runs points"]:
@@ -89,6 +95,7 @@ def reduce_runs(
     quantities: Iterable[SpectrumQuantity] = (),
     record: slice | None = None,
     horizontal: Sequence[int] = (),
+    curves: Sequence[CurveLimit] = (),
 ) -> RunLevels:
     """Reduce the histories of some runs.
 
@@ -104,6 +111,8 @@ def reduce_runs(
         Steps that are looked at; those before and behind fill and empty the filters.
     horizontal : sequence of int
         Points that move sideways: weighted by Wd, and held against its base.
+    curves : sequence of CurveLimit
+        What is watched: for how long levels lie above.
     """
     fs, seen = runs.sampling_frequency, record or slice(None)
     moved, sideways = np.moveaxis(runs.acceleration, 1, -1), list(horizontal)
@@ -123,12 +132,31 @@ def reduce_runs(
         felt=felt,
         base=base,
         contact_forces=runs.contact_forces,
+        lifts=runs.lifting,
     )
     return RunLevels(
         numbers={quantity.name: quantity.measure(histories) for quantity in QUANTITIES},
         spectra=spectra_of(runs, "band_rms_velocity", averaging=averaging, record=record),
         more={name: spectra_of(runs, name, averaging=averaging, record=record) for name in wanted},
+        above=_above(runs, felt, curves) if curves else {},
     )
+
+
+def _above(runs: Runs, felt: Array, curves: Sequence[CurveLimit]) -> dict[str, Array]:
+    """Return for how long running levels lie above curves, those of the second behind counted."""
+    fs = runs.sampling_frequency
+    rest = ((0, 0), (0, 0), (0, round(fs)))
+    motion = {
+        name: np.pad(np.moveaxis(getattr(runs, name), 1, -1), rest)
+        for name in ("displacement", "velocity", "acceleration")
+    }
+    motion["felt"] = np.pad(felt, rest)
+    square = Meter(curves, mid_band_frequencies(), fs).take(motion).square
+    seconds = (square > 1.0).sum(axis=-1) / fs
+    return {
+        curve.name: seconds[i] if curve.is_read else np.full(seconds.shape[1:], np.nan)
+        for i, curve in enumerate(curves)
+    }
 
 
 def reduce_on_scaled_roads(
@@ -138,6 +166,7 @@ def reduce_on_scaled_roads(
     *,
     averaging: Averaging = "max_1s",
     quantities: Iterable[SpectrumQuantity] = (),
+    curves: Sequence[CurveLimit] = (),
 ) -> list[RunLevels]:
     """Reduce some runs as they are on roads of other roughness.
 
@@ -153,6 +182,8 @@ def reduce_on_scaled_roads(
         Averaging rule of the band levels.
     quantities : iterable of SpectrumQuantity
         Spectra wanted beside that of velocity.
+    curves : sequence of CurveLimit
+        What is watched: for how long levels lie above.
 
     Returns
     -------
@@ -164,7 +195,8 @@ def reduce_on_scaled_roads(
         some = runs.part(slice(start, start + _TOGETHER))
         for kept, factor in zip(found, factors, strict=True):
             rougher = some.on_scaled_road(mean, factor)
-            kept.append(reduce_runs(rougher, averaging=averaging, quantities=quantities))
+            levels = reduce_runs(rougher, averaging=averaging, quantities=quantities, curves=curves)
+            kept.append(levels)
     return [join(parts) for parts in found]
 
 
@@ -177,6 +209,7 @@ def join(parts: Sequence[RunLevels]) -> RunLevels:
         },
         spectra=_join_spectra([part.spectra for part in parts]),
         more={name: _join_spectra([part.more[name] for part in parts]) for name in first.more},
+        above={name: np.concatenate([part.above[name] for part in parts]) for name in first.above},
     )
 
 

@@ -11,7 +11,7 @@ from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, ExactStatistics, RunLevels
 from trundle.simulate import Coverage, TruncationChange
 
-__all__ = ["EXACT_SHARES", "Cell", "CellKey", "History"]
+__all__ = ["EXACT_SHARES", "Cell", "CellKey", "DayKey", "History"]
 
 EXACT_SHARES = (50.0, 95.0)
 """Percentiles of the peak that exact statistics are asked for."""
@@ -24,6 +24,14 @@ class CellKey:
     case: str
     road: str
     method: str
+
+
+@dataclass(frozen=True)
+class DayKey:
+    """Name a day: by what schedule, on what road."""
+
+    schedule: str
+    road: str
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

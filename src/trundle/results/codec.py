@@ -19,24 +19,26 @@ from trundle._typing import Array
 from trundle.criteria import BandOutcomes, ClassMap, Criterion, Verdict
 from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, ExactStatistics, LargestValues, RunLevels
-from trundle.results.cells import Cell, CellKey, History
+from trundle.results.cells import Cell, CellKey, DayKey, History
 from trundle.results.field_kinds import fields_hold
 from trundle.results.kept import read_kept, write_kept
 from trundle.results.kept_index import KeptIndex
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.mesh_change import MeshChange
 from trundle.results.modes import FirstModes
-from trundle.results.parts import ChangesPart, ExactPart, MapPart, RunsPart
+from trundle.results.parts import ChangesPart, DayPart, ExactPart, MapPart, RunsPart
 from trundle.simulate import Coverage, TruncationChange
+from trundle.traffic import Day, Loudest, Meeting
 
 __all__ = ["keep_value", "kept_value", "pack", "unpack"]
 
 _CLASSES: Mapping[str, Callable[..., Any]] = {
     kind.__name__: kind
     for kind in (
-        BandOutcomes, BandSpectra, Cell, CellKey, ChangesPart, ClassMap, Coverage, Criterion,
-        ExactPart, ExactStatistics, FirstModes, FitnessWarning, History, KeptIndex, LargestValues,
-        MapKey, MapPart, MeshChange, RunLevels, RunsPart, StudyMap, TruncationChange, Verdict,
+        BandOutcomes, BandSpectra, Cell, CellKey, ChangesPart, ClassMap, Coverage, Criterion, Day,
+        DayKey, DayPart, ExactPart, ExactStatistics, FirstModes, FitnessWarning, History, KeptIndex,
+        LargestValues, Loudest, MapKey, MapPart, Meeting, MeshChange, RunLevels, RunsPart, StudyMap,
+        TruncationChange, Verdict,
     )
 }  # fmt: skip
 _PLAIN = (str, bool, int, float, type(None))

@@ -13,7 +13,7 @@ from typing import Any
 
 from trundle.criteria import Verdict
 from trundle.errors import InputError
-from trundle.results.cells import Cell
+from trundle.results.cells import Cell, DayKey
 from trundle.results.codec import keep_value, kept_value
 from trundle.results.field_kinds import holds
 from trundle.results.kept_index import KeptIndex
@@ -21,13 +21,15 @@ from trundle.results.maps import MapKey, StudyMap
 from trundle.results.owned import check_unchanged
 from trundle.results.study_result import StudyResult
 from trundle.study.model import Study
+from trundle.traffic import Day
 
 __all__ = ["files_of", "index_of", "keep_result", "read_result"]
 
 _FOLDER = "kept"
-_LABEL = "trundle result 1"
+_LABEL = "trundle result 2"
 _CELL = tuple[Cell, tuple[Verdict, ...] | None]
 _MAP = tuple[MapKey, StudyMap]
+_DAY = tuple[DayKey, Day]
 
 
 def keep_result(result: StudyResult, folder: Path) -> None:
@@ -51,12 +53,15 @@ def keep_result(result: StudyResult, folder: Path) -> None:
         keep_value(kept / f"cell{i:04d}", (cell, result.verdicts.get(key)), _LABEL)
     for i, pair in enumerate(result.maps.items()):
         keep_value(kept / f"map{i:04d}", pair, _LABEL)
+    for i, pair in enumerate(result.days.items()):
+        keep_value(kept / f"day{i:04d}", pair, _LABEL)
     index = KeptIndex(
         source=study.source,
         study=hashlib.sha256(study.text.encode()).hexdigest(),
         files=names,
         cells=len(result.cells),
         maps=len(result.maps),
+        days=len(result.days),
         modes=result.modes,
         mesh=result.mesh,
         provenance=result.provenance,
@@ -116,6 +121,7 @@ def read_result(folder: Path, index: KeptIndex, study: Study) -> StudyResult:
         cells={cell.key: cell for cell, _ in cells},
         verdicts={cell.key: verdicts for cell, verdicts in cells if verdicts is not None},
         maps=dict(_read(folder, f"map{i:04d}", _MAP) for i in range(index.maps)),
+        days=dict(_read(folder, f"day{i:04d}", _DAY) for i in range(index.days)),
         modes=index.modes,
         mesh=index.mesh,
         provenance=index.provenance,

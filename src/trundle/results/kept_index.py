@@ -23,7 +23,7 @@ class KeptIndex:
         SHA-256 of its text.
     files : mapping of str to str
         Names of the files that it names, here, by the names that it gives them.
-    cells, maps : int
+    cells, maps, days : int
         How many are kept.
     modes : FirstModes or None
         Natural modes of the floor, where a method used them.
@@ -38,6 +38,7 @@ class KeptIndex:
     files: Mapping[str, str]
     cells: int
     maps: int
+    days: int
     modes: FirstModes | None
     mesh: MeshChange | None
     provenance: Mapping[str, str | int | Mapping[str, str]]

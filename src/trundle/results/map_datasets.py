@@ -94,7 +94,7 @@ def _dataset(
             ways,
             lambda i, name=quantity.name: maps[i].numbers[name],
             quantity.units,
-            f"{quantity.heading} {share}",
+            f"{quantity.heading or quantity.long_name} {share}",
         )
     return dataset
 

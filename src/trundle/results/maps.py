@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from jaxtyping import Float
 
@@ -35,11 +35,15 @@ class StudyMap:
         asks for one.
     band_levels : ndarray of float, shape (n_places, n_bands)
         The same of band levels [m/s].
+    seconds_above : mapping of str to ndarray, shape (n_places,)
+        For how long the running level lies above each curve in one passage, the mean of the runs
+        [s], by the names of criteria; empty unless a day asks for it.
     """
 
     classes: ClassMap
     numbers: Mapping[str, Array]
     band_levels: Float[Array, "places bands"]
+    seconds_above: Mapping[str, Array] = field(default_factory=dict[str, Array])
 
     def part(self, places: slice) -> StudyMap:
         """Return some of the places."""
@@ -47,4 +51,5 @@ class StudyMap:
             classes=self.classes.part(places),
             numbers={name: values[places] for name, values in self.numbers.items()},
             band_levels=self.band_levels[places],
+            seconds_above={name: values[places] for name, values in self.seconds_above.items()},
         )

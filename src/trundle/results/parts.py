@@ -15,9 +15,11 @@ from trundle.results.cells import EXACT_SHARES, Cell, CellKey, History
 from trundle.results.maps import StudyMap
 from trundle.simulate import Coverage, Runs, TruncationChange
 from trundle.simulate.fitness import LOST_CONTACT, contact_warnings
+from trundle.traffic import Day
 
 __all__ = [
     "ChangesPart",
+    "DayPart",
     "ExactPart",
     "MapPart",
     "Part",
@@ -100,7 +102,14 @@ class ChangesPart:
     variants: tuple[RunsPart, ...]
 
 
-Part: TypeAlias = RunsPart | ExactPart | MapPart | ChangesPart
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DayPart:
+    """Hold one day of a schedule, by road."""
+
+    days: tuple[Day, ...]
+
+
+Part: TypeAlias = RunsPart | ExactPart | MapPart | ChangesPart | DayPart
 """What a task leaves."""
 
 

@@ -15,6 +15,7 @@ from trundle._json import plain
 from trundle.response import percentile_interval, tabled
 from trundle.results.cells import Cell
 from trundle.results.datasets import result_groups
+from trundle.results.day_tables import day_table, dose_table, hour_table, together_table
 from trundle.results.folder import keep_result
 from trundle.results.results_folder import uninterrupted
 from trundle.results.study_result import StudyResult, positions_at
@@ -29,12 +30,20 @@ def write_results(result: StudyResult, folder: Path) -> None:
         _write_zarr(result, folder / "results.zarr")
     rows, verdicts = list(summary_rows(result)), list(_verdict_rows(result))
     _write_rows(folder / "summary.csv", rows)
-    if verdicts:
-        _write_rows(folder / "verdicts.csv", [_flat(row) for row in verdicts])
+    more = {
+        "verdicts": verdicts,
+        "together": list(together_table(result)),
+        "days": list(day_table(result)),
+        "day_hours": list(hour_table(result)),
+        "day_doses": list(dose_table(result)),
+    }
+    for name, some in more.items():
+        if some:
+            _write_rows(folder / f"{name}.csv", [_flat(row) for row in some])
     summary = {
         "provenance": dict(result.provenance),
         "cells": rows,
-        "verdicts": verdicts,
+        **more,
         "warnings": {
             method: [str(warning) for warning in found]
             for method, found in result.warnings().items()

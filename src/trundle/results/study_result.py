@@ -12,7 +12,7 @@ from trundle._html import html_table
 from trundle.criteria import Verdict
 from trundle.errors import FitnessWarning
 from trundle.response import BandSpectra, few_runs_warnings, level_warnings, size_warnings
-from trundle.results.cells import Cell, CellKey
+from trundle.results.cells import Cell, CellKey, DayKey
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.mesh_change import MeshChange, mesh_warnings
 from trundle.results.modes import FirstModes
@@ -20,6 +20,7 @@ from trundle.simulate import Source
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
 from trundle.study.doubts import study_doubts
 from trundle.study.model import Study
+from trundle.traffic import Day
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -42,6 +43,8 @@ class StudyResult:
     maps : mapping of MapKey to StudyMap
         Maps by the assessed method, where the study asks for them: at the study's speeds and at
         those that its map names.
+    days : mapping of DayKey to Day
+        Days of the schedules, run passage by passage.
     modes : FirstModes or None
         Natural modes of the floor, where a method used them.
     mesh : MeshChange or None
@@ -54,6 +57,7 @@ class StudyResult:
     cells: Mapping[CellKey, Cell]
     verdicts: Mapping[CellKey, tuple[Verdict, ...]]
     maps: Mapping[MapKey, StudyMap]
+    days: Mapping[DayKey, Day]
     modes: FirstModes | None
     mesh: MeshChange | None
     provenance: Mapping[str, Any]

@@ -6,14 +6,14 @@ whole parts of sixteen studies on two cores (`benchmarks/estimate.py`), to withi
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from trundle.run.jobs import Job
 from trundle.simulate.ensembles import runs_at_once
 
-__all__ = ["Size", "exact_seconds", "map_seconds", "run_in_steps", "runs_seconds"]
+__all__ = ["Size", "day_seconds", "exact_seconds", "map_seconds", "run_in_steps", "runs_seconds"]
 
 _PASS = 7e-5  # s for each step of a batch, however few its runs
 _DIRECT = 1e-8  # s for each run, step and degree of freedom to the power 1.2
@@ -68,6 +68,17 @@ def exact_seconds(job: Job, size: Size) -> float:
     waves = job.n_waves * sum(source.random for source in job.sources)
     passes = float(np.ceil(waves / at_once))
     return _steps(job) * (passes * _PASS + 2.0 * waves * a_wave)
+
+
+def day_seconds(job: Job, size: Size) -> float:
+    """Return about how long a day takes, on all its roads [s]: its passages, and their bands."""
+    if job.schedule is None:
+        return 0.0
+    passages, routes = job.schedule.per_day, max(1, len(job.sources))
+    alone = replace(job, factors=dict.fromkeys(list(job.factors)[:1], 1.0))
+    runs = runs_seconds(alone, range(int(np.ceil(passages / routes))), size)
+    read = 4e-7 * _steps(job) * passages * len(job.points)
+    return len(job.factors) * (runs + read)
 
 
 def map_seconds(job: Job) -> float:

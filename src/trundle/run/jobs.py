@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trundle.criteria import spectra_asked_for
+from trundle.criteria import Criterion, spectra_asked_for
 from trundle.response import (
     SpectrumQuantity,
 )
@@ -23,10 +23,12 @@ from trundle.simulate import (
     lay_out_places,
 )
 from trundle.simulate.ensembles import runs_at_once
+from trundle.simulate.sources.crossing import TAIL
 from trundle.structure import Spot
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Study
 from trundle.study.plans import Case, MethodPlan
+from trundle.traffic import Schedule
 
 __all__ = ["Job", "PreparedJob", "plan_jobs", "prepare_job"]
 
@@ -73,6 +75,10 @@ class Job:
         What is mapped over the floor, by the method that carries the verdict.
     speed : float or None
         Speed of every vehicle if it is not the study's [m/s]; such a job leaves a map alone.
+    watched : tuple of Criterion
+        Curves above which time is counted, where a day is asked for.
+    schedule : Schedule or None
+        A day whose passages the job runs; the case then names its routes, none of them at once.
     """
 
     name: str
@@ -90,6 +96,8 @@ class Job:
     isolations: Mapping[str, Isolation]
     map: MapPlan | None
     speed: float | None
+    watched: tuple[Criterion, ...] = ()
+    schedule: Schedule | None = None
 
     @property
     def modal(self) -> bool:
@@ -103,25 +111,52 @@ def plan_jobs(study: Study) -> tuple[Job, ...]:
         job
         for i, method in enumerate(study.methods)
         for j, case in enumerate(study.cases)
-        for k, roads in enumerate(_groups(study))
+        for k, roads in enumerate(_groups(study, case))
         for job in _jobs(study, f"method{i}-case{j}-roads{k}", (case, method), roads)
-    )
+    ) + tuple(_days(study))
 
 
-def _groups(study: Study) -> list[list[str]]:
+def _days(study: Study) -> Iterator[Job]:
+    """Give a job for each day that is run, by the method that carries the verdict."""
+    assessment = study.assessment
+    if assessment is None:
+        return
+    method = next(m for m in study.methods if m.name == assessment.method)
+    for i, (name, schedule) in enumerate(study.schedules.items()):
+        case = Case(name=name, routes=schedule.routes)
+        for k, roads in enumerate(_groups(study, case)):
+            job = next(_jobs(study, f"day{i}-roads{k}", (case, method), roads))
+            yield replace(job, parts=(), n_waves=0, map=None, schedule=schedule)
+
+
+def _groups(study: Study, case: Case) -> list[list[str]]:
     """Return roads together whose random parts differ by a factor, and by nothing else.
 
-    Over vehicles that are not linear no response follows from that on another road.
+    Over vehicles that are not linear no response follows from that on another road; nor does it
+    where something else is random too, which no road scales. Without a vehicle no road counts.
     """
-    groups: dict[object, list[str]] = {}
-    if not all(drive.vehicle.is_linear for drive in study.drives.values()):
+    drives = [study.drives[name] for name in case.routes if name in study.drives]
+    if not drives:
+        return [list(study.roads)]
+    others = (study.sources[name] for name in case.routes if name in study.sources)
+    linear = all(drive.vehicle.is_linear for drive in study.drives.values())
+    if not linear or any(source.varies for source in others):
         return [[name] for name in study.roads]
+    groups: dict[object, list[str]] = {}
     for name, road in study.roads.items():
         features = road.features if isinstance(road, FeaturedRoad) else ()
         base = road.base if isinstance(road, FeaturedRoad) else road
         alike = None if base.is_given or base.spectrum is None else base.spectrum.waviness
         groups.setdefault((name if alike is None else alike, features), []).append(name)
     return list(groups.values())
+
+
+def _factors(study: Study, case: Case, roads: list[str]) -> dict[str, float]:
+    """Return how many times rougher each road is than the first; all alike where nobody drives."""
+    if not any(name in study.drives for name in case.routes):
+        return dict.fromkeys(roads, 1.0)
+    first = _roughness(study.roads[roads[0]])
+    return {name: float(np.sqrt(_roughness(study.roads[name]) / first)) for name in roads}
 
 
 def _roughness(road: Road) -> float:
@@ -135,20 +170,21 @@ def _jobs(
     """Give the job at the study's own speeds, and one for each further speed that is mapped."""
     case, method = what
     sources = study.acting(case, roads[0], method)
-    first = _roughness(study.roads[roads[0]])
     length = study.record_length(sources)
     dt = method.interaction.integration.dt
     size = runs_at_once(sources, dt, length, len(study.points))
     n_parts = -(-study.runs // size)
     edges = np.linspace(0, study.runs, n_parts + 1).astype(int)
     modal = method.interaction.integration.f_max is not None
-    n_random = sum(source.random for source in sources)
+    # waves of a road answer for nothing else that is random
+    varies = any(source.varies for source in sources)
+    n_random = 0 if varies else sum(source.random for source in sources)
     job = Job(
         name=name,
         case=case,
         method=method,
         sources=sources,
-        factors={name: float(np.sqrt(_roughness(study.roads[name]) / first)) for name in roads},
+        factors=_factors(study, case, roads),
         parts=tuple(range(a, b) for a, b in itertools.pairwise(edges)),
         n_waves=max(2, _WAVES // n_random) if modal and n_random else 0,
         points=study.points,
@@ -159,6 +195,7 @@ def _jobs(
         isolations=study.isolations,
         map=_map(study, case, method),
         speed=None,
+        watched=_watched(study, method),
     )
     yield job
     for i, speed in enumerate(job.map.speeds if job.map is not None else ()):
@@ -176,10 +213,32 @@ def _jobs(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PreparedJob:
-    """Hold what all parts of a job share: its layout, and the way to the places of its map."""
+    """Hold what all parts of a job share: its layout, and the way to the places of its map.
+
+    Attributes
+    ----------
+    layout : Layout
+        Of all that acts at once; of a day, of its first route.
+    places : PlaceResponses or None
+        What leads to the places of a map.
+    alone : mapping of str to Layout
+        Of a day, one passage on each route.
+    floor : PreparedFloor or None
+        Of a day, the floor that two who meet are run together on.
+    """
 
     layout: Layout
     places: PlaceResponses | None
+    alone: Mapping[str, Layout] = field(default_factory=dict[str, Layout])
+    floor: PreparedFloor | None = None
+
+
+def _watched(study: Study, method: MethodPlan) -> tuple[Criterion, ...]:
+    """Return the curves above which time is counted: of the assessed method, if a day asks."""
+    assessment = study.assessment
+    if assessment is None or assessment.method != method.name or not study.schedules:
+        return ()
+    return assessment.criteria
 
 
 def _map(study: Study, case: Case, method: MethodPlan) -> MapPlan | None:
@@ -192,6 +251,19 @@ def _map(study: Study, case: Case, method: MethodPlan) -> MapPlan | None:
 
 def prepare_job(job: Job, floor: PreparedFloor) -> PreparedJob:
     """Lay out what all parts of a job share."""
+    if job.schedule is not None:
+        alone = {
+            source.name: lay_out(
+                floor,
+                source,
+                method=job.method.interaction,
+                points=job.points,
+                duration=float(np.ceil(source.leaves + TAIL + 1.0)),
+            )
+            for source in job.sources
+        }
+        first = next(iter(alone.values()))
+        return PreparedJob(layout=first, places=None, alone=alone, floor=floor)
     layout = lay_out(
         floor,
         job.sources,

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from trundle._progress import Progress
-from trundle.criteria import class_map
-from trundle.response import FloorMap, floor_map
+from trundle.criteria import class_map, watched
+from trundle.response import CurveLimit, FloorMap, floor_map
 from trundle.results.maps import StudyMap
 from trundle.results.parts import MapPart
 from trundle.simulate import Layout, PlaceResponses, contact_force_histories
@@ -24,6 +24,7 @@ def map_part(
     factors: Sequence[float],
     seed: int,
     *,
+    days: bool = False,
     progress: Progress | None = None,
 ) -> MapPart:
     """Map a case on every road, and keep what is drawn of it."""
@@ -34,6 +35,8 @@ def map_part(
         f_max=layout.f_max,
         averaging=plan.averaging,
         peaks=plan.peaks,
+        people=plan.people,
+        curves=_watched(plan, layout) if days else (),
         every_step=plan.every_step,
         progress=progress,
     )
@@ -43,6 +46,17 @@ def map_part(
             for i in range(len(factors))
         )
     )
+
+
+def _watched(plan: MapPlan, layout: Layout) -> tuple[CurveLimit, ...]:
+    """Return the curves of a map, as far as anything is known in their bands."""
+    curves, _ = watched(
+        plan.criteria,
+        f_max=layout.f_max,
+        sampling_frequency=1.0 / layout.integration.dt,
+        coverage=layout.coverage,
+    )
+    return curves
 
 
 def _of_road(found: FloorMap, plan: MapPlan, layout: Layout) -> StudyMap:
@@ -61,4 +75,5 @@ def _of_road(found: FloorMap, plan: MapPlan, layout: Layout) -> StudyMap:
             for name, levels in found.numbers.items()
         },
         band_levels=np.percentile(found.band_levels, plan.percentile, axis=0),
+        seconds_above={name: np.mean(values, axis=0) for name, values in found.above.items()},
     )

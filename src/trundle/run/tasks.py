@@ -10,14 +10,16 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from trundle._progress import Progress
+from trundle.criteria import watched
 from trundle.response import behind_isolators, exact_statistics, reduce_on_scaled_roads
 from trundle.results.parts import Part, exact_part, runs_part
-from trundle.run.costs import Size, exact_seconds, map_seconds, runs_seconds
+from trundle.run.costs import Size, day_seconds, exact_seconds, map_seconds, runs_seconds
+from trundle.run.days import day_part
 from trundle.run.jobs import Job, PreparedJob
 from trundle.run.mapping import map_part
 from trundle.simulate import harmonics, runs_with_mean, truncation_change
 
-__all__ = ["ExactTask", "MapTask", "RunsTask", "Task", "tasks_of"]
+__all__ = ["DayTask", "ExactTask", "MapTask", "RunsTask", "Task", "tasks_of"]
 
 
 @runtime_checkable
@@ -78,8 +80,19 @@ class RunsTask:
         change = truncation_change(layout, runs, job.parts[0]) if first and job.modal else None
         runs = behind_isolators(runs, job.isolations)
         mean = behind_isolators(mean, job.isolations)
+        curves, _ = watched(
+            job.watched,
+            f_max=runs.f_max,
+            sampling_frequency=runs.sampling_frequency,
+            coverage=runs.coverage,
+        )
         reduced = reduce_on_scaled_roads(
-            runs, mean, factors, averaging=job.averaging, quantities=job.quantities
+            runs,
+            mean,
+            factors,
+            averaging=job.averaging,
+            quantities=job.quantities,
+            curves=curves,
         )
         one = runs.part(slice(0, 1))
         histories = [one.on_scaled_road(mean, factor) for factor in factors] if first else []
@@ -137,11 +150,41 @@ class MapTask:
         assert plan is not None  # else it is no task of the job
         assert places is not None  # laid out with the map
         factors = list(job.factors.values())
-        return map_part(plan, laid_out.layout, places, factors, job.seed, progress=progress)
+        return map_part(
+            plan,
+            laid_out.layout,
+            places,
+            factors,
+            job.seed,
+            days=bool(job.watched),
+            progress=progress,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DayTask:
+    """Run one day of a schedule, on every road of a job."""
+
+    job: Job
+
+    @property
+    def name(self) -> str:
+        """Name of what it leaves."""
+        return f"{self.job.name}-day"
+
+    def seconds(self, size: Size) -> float:
+        """Return about how long it takes."""
+        return day_seconds(self.job, size)
+
+    def compute(self, laid_out: PreparedJob, progress: Progress | None = None) -> Part:
+        """Run all passages, and add them up in time."""
+        return day_part(self.job, laid_out, progress=progress)
 
 
 def tasks_of(job: Job) -> tuple[Task, ...]:
     """Return the parts of a job, its runs first."""
+    if job.schedule is not None:
+        return (DayTask(job=job),)
     tasks: list[Task] = [RunsTask(job=job, number=i) for i in range(len(job.parts))]
     if job.n_waves:
         tasks.append(ExactTask(job=job))

@@ -12,10 +12,10 @@ from trundle._words import in_kmh
 from trundle.criteria import Verdict, assess_reduced
 from trundle.dynamics import Modes, repeatable
 from trundle.errors import InputError
-from trundle.results.cells import Cell, CellKey
+from trundle.results.cells import Cell, CellKey, DayKey
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.modes import first_modes
-from trundle.results.parts import MapPart, cell_of
+from trundle.results.parts import DayPart, MapPart, cell_of
 from trundle.results.provenance import provenance_of
 from trundle.results.study_result import StudyResult
 from trundle.run.checkpoint import InMemory, PieceStore
@@ -29,6 +29,7 @@ from trundle.run.progress import Bar
 from trundle.run.tasks import tasks_of
 from trundle.run.threads import Threads
 from trundle.study.model import Study
+from trundle.traffic import Day
 
 __all__ = ["run_study"]
 
@@ -99,8 +100,15 @@ def _result(
 ) -> StudyResult:
     found: dict[CellKey, Cell] = {}
     maps: dict[MapKey, StudyMap] = {}
+    days: dict[DayKey, Day] = {}
     for job in jobs:
         parts = [store.load(task.name) for task in tasks_of(job)]
+        for part in parts:
+            if isinstance(part, DayPart):
+                keys = (DayKey(job.case.name, road) for road in job.factors)
+                days |= dict(zip(keys, part.days, strict=True))
+        if job.schedule is not None:
+            continue
         mapped = [part for part in parts if isinstance(part, MapPart)]
         for i, (road, factor) in enumerate(job.factors.items()):
             key = CellKey(job.case.name, road, job.method.name)
@@ -119,6 +127,7 @@ def _result(
         cells=cells,
         verdicts=verdicts,
         maps=_in_order(study, maps),
+        days={key: days[key] for key in _day_keys(study) if key in days},
         modes=None if modes is None else first_modes(modes, study.floor),
         mesh=None,
         provenance=provenance_of(study),
@@ -135,6 +144,12 @@ def _in_order(study: Study, maps: Mapping[MapKey, StudyMap]) -> dict[MapKey, Stu
         for road in study.roads
     )
     return {key: maps[key] for key in keys if key in maps}
+
+
+def _day_keys(study: Study) -> Iterator[DayKey]:
+    for name in study.schedules:
+        for road in study.roads:
+            yield DayKey(name, road)
 
 
 def _keys(study: Study) -> Iterator[CellKey]:

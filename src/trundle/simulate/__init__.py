@@ -42,6 +42,7 @@ from trundle.simulate.spectral.footfall_terms import footfall_paces
 from trundle.simulate.spectral.harmonics import Harmonics, harmonics, mean_response
 from trundle.simulate.spectral.place_spectra import place_spectra
 from trundle.simulate.spectral.places import PlaceResponses, lay_out_places
+from trundle.simulate.spectral.transfer import TransferFunctions, transfer
 from trundle.simulate.truncation import TruncationChange, truncation_change
 
 __all__ = [
@@ -77,6 +78,7 @@ __all__ = [
     "SciRule",
     "Source",
     "StaticFlexibility",
+    "TransferFunctions",
     "TruncationChange",
     "WaveSet",
     "Waves",
@@ -99,5 +101,6 @@ __all__ = [
     "point_load_deflection",
     "prepare",
     "runs_with_mean",
+    "transfer",
     "truncation_change",
 ]

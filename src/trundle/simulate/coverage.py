@@ -26,16 +26,20 @@ class Coverage:
     Attributes
     ----------
     excited_to : float
-        Frequency at which the waves of the first road end, the least of all vehicles [Hz].
+        Frequency at which the waves of the first road end, the least of all vehicles [Hz]; of
+        sources whose forces are known, where those end.
     leaves : float
         Time at which the last wheel leaves the floor [s].
     ends : float
         Time at which the record ends [s].
+    by : {"road", "forces"}
+        What ends there: a road's waves, or forces that are known.
     """
 
     excited_to: float = np.inf
     leaves: float = -np.inf
     ends: float = np.inf
+    by: str = "road"
 
     @property
     def left(self) -> bool:
@@ -56,11 +60,17 @@ class Coverage:
         """
         found: list[str] = []
         if not self.left:
+            last = "last wheel leaves the floor" if self.by == "road" else "last source ends"
             found.append(
-                f"the record ends at {self.ends:.3g} s and the last wheel leaves the floor at "
+                f"the record ends at {self.ends:.3g} s and the {last} at "
                 f"{self.leaves:.3g} s: lengthen or remove duration"
             )
-        if waves:
+        if waves and self.by == "forces":
+            found.append(
+                f"the forces that are given end at {self.excited_to:.3g} Hz, and nothing excites "
+                "the bands above: give harmonics or impulses that reach further, if there are any"
+            )
+        elif waves:
             times = 10.0**0.05 * TOP_FREQUENCY / self.excited_to
             found.append(
                 f"the road's waves end at {self.excited_to:.3g} Hz at this speed, and nothing "
@@ -81,8 +91,13 @@ def coverage_of(sources: Sequence[Crossing | Source], ends: float) -> Coverage:
         Length of the record [s].
     """
     many = as_sources(sources)
+    # a force that is known altogether bounds nobody else's reach
+    bounding = [source for source in many if not source.complete]
+    reach = [source.excited_to(ends) for source in bounding or many]
+    chosen = int(np.argmin(reach) if bounding else np.argmax(reach))
     return Coverage(
-        excited_to=min(source.excited_to(ends) for source in many),
+        excited_to=reach[chosen],
         leaves=max(source.leaves for source in many),
         ends=ends,
+        by="forces" if (bounding or many)[chosen].oscillator is None else "road",
     )

@@ -184,7 +184,8 @@ def mean_of(layout: Layout, record: Driven) -> MeanResponse:
 
 
 def _runs_of(layout: Layout, record: Driven, seed: int) -> Runs:
-    tension = np.any(record.forces < 0.0, axis=(0, 1))
+    lifts = tuple(s.oscillator is not None for s in layout.sources for _ in s.contact_names)
+    tension = np.any(record.forces[:, np.array(lifts)] < 0.0, axis=(0, 1))
     return Runs(
         time=layout.time,
         displacement=np.transpose(record.displacement, (2, 0, 1)),
@@ -197,6 +198,7 @@ def _runs_of(layout: Layout, record: Driven, seed: int) -> Runs:
         method=str(layout.method),
         f_max=layout.f_max,
         coverage=layout.coverage,
+        lifts=lifts,
         warnings=(*contact_warnings(float(np.mean(tension))), *layout.doubts),
     )
 

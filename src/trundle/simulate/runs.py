@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
@@ -63,6 +63,8 @@ class Runs:
         Doubts about the result's fitness.
     coverage : Coverage
         Which bands the road excites, and whether the vehicles have left.
+    lifts : tuple of bool
+        Which contacts would leave the floor rather than pull; all unless given.
     """
 
     time: Float[Array, " steps"]
@@ -77,6 +79,7 @@ class Runs:
     f_max: float
     warnings: tuple[FitnessWarning, ...] = ()
     coverage: Coverage = field(default_factory=Coverage)
+    lifts: tuple[bool, ...] | None = None
 
     @property
     def n_runs(self) -> int:
@@ -98,6 +101,13 @@ class Runs:
         """Sampling frequency [Hz]."""
         return 1.0 / self.dt
 
+    @property
+    def lifting(self) -> Bool[Array, " contacts"]:
+        """Which contacts would leave the floor rather than pull."""
+        if self.lifts is None:
+            return np.ones(self.contact_forces.shape[2], dtype=bool)
+        return np.array(self.lifts, dtype=bool)
+
     def point(self, name: str) -> int:
         """Return the place of a point along the last axis, by its name."""
         if name not in self.point_names:
@@ -117,7 +127,7 @@ class Runs:
 
     def tension_share(self) -> Float[Array, " contacts"]:
         """Return the share of runs in which each contact would have to pull at some time."""
-        return np.mean((self.contact_forces < 0.0).any(axis=1), axis=0)
+        return np.mean((self.contact_forces < 0.0).any(axis=1) & self.lifting, axis=0)
 
     def part(self, which: slice) -> Runs:
         """Return some of the runs, without holding on to the others' histories."""

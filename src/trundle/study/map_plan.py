@@ -109,6 +109,8 @@ class MapPlan:
         Whether the largest 1 s is looked for at every time step, see `floor_map`.
     peaks : bool
         Whether peak accelerations are mapped too; they take half as long again.
+    people : bool
+        Whether what people feel is mapped too: response factors and doses; as long again.
     speeds : tuple of float
         Constant speeds of every vehicle that are mapped beside those of the study [m/s].
     """
@@ -122,6 +124,7 @@ class MapPlan:
     traffic: bool
     every_step: bool
     peaks: bool
+    people: bool
     speeds: tuple[float, ...]
 
     @property

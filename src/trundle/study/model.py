@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -18,12 +19,13 @@ from trundle.route import ConstantSpeed, Route
 from trundle.signals import Isolation
 from trundle.simulate import Crossing
 from trundle.simulate.sources.crossing import TAIL
-from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.sources.passage import Passage
 from trundle.simulate.sources.source import Source
 from trundle.structure import FloorPlan, Spot, Structure, build_floor
 from trundle.structure.building import Building, Meshing, build_building
 from trundle.study.map_plan import MapPlan
 from trundle.study.plans import Assessment, Case, Drive, MethodPlan, Note, Printed, PrintedBound
+from trundle.traffic import Schedule
 
 __all__ = [
     "Extent",
@@ -83,6 +85,8 @@ class Study:
         Routes by name.
     sources : mapping of str to Source
         Other sources of vibration by name.
+    schedules : mapping of str to Schedule
+        Who drives on a day, by name.
     cases : tuple of Case
         Single routes first, then traffic.
     roads : mapping of str to Road
@@ -127,6 +131,7 @@ class Study:
     mesh_size: float
     drives: Mapping[str, Drive]
     sources: Mapping[str, Source]
+    schedules: Mapping[str, Schedule]
     cases: tuple[Case, ...]
     roads: Mapping[str, Road]
     band: RoughnessBand
@@ -232,16 +237,18 @@ class Study:
 
     def acting(self, case: Case, road: str, method: MethodPlan) -> tuple[Source, ...]:
         """Return what acts in one cell: passages on the road, and other sources as they are."""
-        return as_sources(
-            [
-                self.sources[name]
-                if name in self.sources
-                else self._crossing(self.drives[name], road, method)
-                for name in case.routes
-            ]
-        )
+        before: Counter[str] = Counter()
+        found: list[Source] = []
+        for name, depart in zip(case.routes, case.departs, strict=True):
+            before[name] += 1
+            if name in self.sources:
+                found.append(self.sources[name])
+                continue
+            crossing = self._crossing(self.drives[name], road, method, depart)
+            found.append(Passage(crossing=crossing, number=before[name]))
+        return tuple(found)
 
-    def _crossing(self, drive: Drive, road: str, method: MethodPlan) -> Crossing:
+    def _crossing(self, drive: Drive, road: str, method: MethodPlan, depart: float) -> Crossing:
         return Crossing(
             vehicle=drive.vehicle,
             route=drive.route,
@@ -249,6 +256,7 @@ class Study:
             band=self.band_for(drive, method),
             entry=method.entry,
             run_in=drive.run_in,
+            depart=depart,
         )
 
     def at_speed(self, speed: float) -> Study:

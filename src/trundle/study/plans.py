@@ -42,11 +42,19 @@ class Case:
     name : str
         Name of the route or source, or of the traffic.
     routes : tuple of str
-        Names of what acts together.
+        Names of what acts together; a route may be there more than once, with times of its own.
+    departs : tuple of float
+        When each departs [s]; all at once unless given.
     """
 
     name: str
     routes: tuple[str, ...]
+    departs: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Let all depart at once unless told otherwise."""
+        if not self.departs:
+            object.__setattr__(self, "departs", (0.0,) * len(self.routes))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -17,6 +17,7 @@ from trundle.study.map_plan import MapPlan
 from trundle.study.model import Extent, extent_of
 from trundle.study.plans import Assessment, Drive, MethodPlan
 from trundle.study_file.document import StudyFile
+from trundle.traffic import Schedule
 from trundle.vehicle import Vehicle
 
 __all__ = [
@@ -63,6 +64,8 @@ class Draft:
         Routes by name.
     sources : mapping of str to Source
         Other sources of vibration by name; a section adds its own.
+    schedules : mapping of str to Schedule
+        By name.
     roads : mapping of str to Road
         By label.
     band : RoughnessBand or None
@@ -94,6 +97,7 @@ class Draft:
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict[str, Vehicle])
     drives: Mapping[str, Drive] = field(default_factory=dict[str, Drive])
     sources: Mapping[str, Source] = field(default_factory=dict[str, Source])
+    schedules: Mapping[str, Schedule] = field(default_factory=dict[str, Schedule])
     roads: Mapping[str, Road] = field(default_factory=dict[str, Road])
     band: RoughnessBand | None = None
     band_follows_dt: bool = True

@@ -29,6 +29,7 @@ __all__ = [
     "Grade",
     "GridPlace",
     "GroupName",
+    "Impulse",
     "Length",
     "Line",
     "LineDensity",
@@ -51,6 +52,7 @@ __all__ = [
     "Stiffness",
     "StiffnessPerMetre",
     "Time",
+    "Unbalance",
     "Wavenumber",
     "Whole",
 ]
@@ -82,6 +84,8 @@ _LARGEST = {
     "second moment": 1e4,
     "pressure": 1e13,
     "force": 1e9,
+    "impulse": 1e6,
+    "unbalance": 1e4,
     "stiffness": 1e13,
     "damping coefficient": 1e11,
     "moment of inertia": 1e10,
@@ -177,6 +181,8 @@ AreaDensity: TypeAlias = Annotated[float, _quantity("area density"), _NON_NEGATI
 Density: TypeAlias = Annotated[float, _quantity("density"), _POSITIVE]
 Pressure: TypeAlias = Annotated[float, _quantity("pressure"), _POSITIVE]
 Force: TypeAlias = Annotated[float, _quantity("force"), _NON_NEGATIVE]
+Impulse: TypeAlias = Annotated[float, _quantity("impulse"), _POSITIVE]
+Unbalance: TypeAlias = Annotated[float, _quantity("unbalance"), _POSITIVE]
 Stiffness: TypeAlias = Annotated[float, _quantity("stiffness"), _NON_NEGATIVE]
 DampingCoefficient: TypeAlias = Annotated[float, _quantity("damping coefficient"), _NON_NEGATIVE]
 RotaryInertia: TypeAlias = Annotated[float, _quantity("moment of inertia"), _NON_NEGATIVE]

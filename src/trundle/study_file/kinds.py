@@ -24,6 +24,8 @@ class SectionKind:
         Whether a study needs at least one.
     usual : str
         Kind of a table that names none, where there are several.
+    shakes : bool
+        Whether it is a source of vibration that needs no vehicle, route and road beside it.
     """
 
     name: str
@@ -31,6 +33,7 @@ class SectionKind:
     form: Literal["table", "named", "list"]
     required: bool = False
     usual: str = ""
+    shakes: bool = False
 
     @property
     def header(self) -> str:

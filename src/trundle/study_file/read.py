@@ -28,6 +28,8 @@ _NAMED_TABLES = {kind.name: kind.schema for kind in KINDS if kind.form == "named
 _LISTS = {kind.name: kind.schema for kind in KINDS if kind.form == "list"}
 _HEADERS = {kind.name: kind.header for kind in KINDS}
 _REQUIRED = tuple(kind.name for kind in KINDS if kind.required)
+_DRIVING = ("vehicle", "route", "road")
+_SHAKING = tuple(kind.name for kind in KINDS if kind.shakes)
 _GENERAL = tuple(GeneralSection.model_fields)
 
 
@@ -48,7 +50,7 @@ def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
     problems: list[Problem] = []
     known = (*_GENERAL, *_TABLES, *_NAMED_TABLES, *_LISTS)
     problems += [_unknown_key(key, data[key], known, "") for key in data if key not in known]
-    problems += [_missing(name) for name in _REQUIRED if name not in data]
+    problems += [_missing(name) for name in _needed(data) if name not in data]
     general = _section(GeneralSection, {k: data[k] for k in _GENERAL if k in data}, "", problems)
     tables = {
         name: section
@@ -69,6 +71,12 @@ def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
         given=frozenset(data),
     )
     return study, problems
+
+
+def _needed(data: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return the sections that there must be: people and machines shake a floor by themselves."""
+    alone = any(name in data for name in _SHAKING) and not any(k in data for k in _DRIVING)
+    return tuple(name for name in _REQUIRED if not (alone and name in _DRIVING))
 
 
 def _declared(data: Mapping[str, Any]) -> dict[str, set[str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -17,9 +17,9 @@ from trundle.simulate.sources.within import check_within
 from trundle.simulate.wheels.surfaces import tracks_on
 from trundle.structure import Structure, Surface
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, is_off, surface_at
+from trundle.study_file.draft import Draft, covered, is_off, surface_at
 
-__all__ = ["off_slabs", "wheels_off"]
+__all__ = ["off_slabs", "place_problems", "way_problems", "wheels_off"]
 
 _LOOKED_AT = 0.1  # m along a route
 
@@ -39,6 +39,72 @@ def off_slabs(draft: Draft) -> Iterator[Problem]:
             surface = surfaces[name]
             if surface is not None:
                 yield from _leg_off(f"route[{i + 1}].path[{j}]", start, end, surface)
+
+
+def place_problems(
+    draft: Draft, place: str, key: str, at: Sequence[Sequence[float]], on: str | None
+) -> Iterator[Problem]:
+    """Give what stands off the floor, or on no storey.
+
+    Parameters
+    ----------
+    draft : Draft
+        With a floor.
+    place : str
+        What stands there.
+    key : str
+        Its key that says where.
+    at : sequence of pairs of float
+        Where, in plan [m].
+    on : str or None
+        Name of the surface.
+
+    Yields
+    ------
+    Problem
+        One for each place.
+    """
+    surface, mistakes = surface_at(draft, f"{place}.on", on)
+    yield from mistakes
+    for i, one in enumerate(np.array(at, dtype=float).reshape(-1, 2)):
+        here = f"{place}.{key}" + (f"[{i + 1}]" if len(at) > 1 else "")
+        value = f"({one[0]:g}, {one[1]:g}) m"
+        if draft.extent is not None and is_off(draft.extent, (one[0], one[1])):
+            rule = f"must stand on the floor; {covered(draft.extent)}"
+            yield Problem(place=here, value=value, rule=rule, remedy="move it onto the floor")
+        elif surface is not None and not surface.holds(surface.frame.from_plan(one[None]))[0]:
+            rule = f"must stand on a slab of {surface.name!r}"
+            yield Problem(place=here, value=value, rule=rule, remedy="move it onto the slab")
+
+
+def way_problems(
+    draft: Draft, place: str, path: Sequence[Sequence[float]], on: str | None
+) -> Iterator[Problem]:
+    """Give corners of a way off the floor, and legs over no slab.
+
+    Parameters
+    ----------
+    draft : Draft
+        With a floor.
+    place : str
+        Who goes there.
+    path : sequence of pairs of float
+        Corners in plan [m].
+    on : str or None
+        Name of the surface.
+
+    Yields
+    ------
+    Problem
+        One for each corner or leg.
+    """
+    off = list(place_problems(draft, place, "path", path, on))
+    yield from off
+    surface, _ = surface_at(draft, f"{place}.on", on)
+    if surface is None or off:
+        return
+    for j, (start, end) in enumerate(pairwise(np.array(path)), start=1):
+        yield from _leg_off(f"{place}.path[{j}]", start, end, surface)
 
 
 def _leg_off(place: str, start: Array, end: Array, surface: Surface) -> Iterator[Problem]:

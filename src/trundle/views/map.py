@@ -34,7 +34,7 @@ class MapView:
     classes : ClassMap
         Margins, exceedance and classes.
     routes : tuple of str
-        Names of the routes driven.
+        Names of the routes driven, and of other sources.
     numbers : mapping of str to ndarray, shape (n_places,)
         Levels that the share of runs stays below [m/s], [m/s2]; peaks NaN if not asked for.
     printed : bool
@@ -66,11 +66,7 @@ def map_views(result: StudyResult) -> list[MapView]:
 def _views_on(result: StudyResult, plan: MapPlan, grid: MapGrid, part: slice) -> list[MapView]:
     maps = {key: one.part(part) for key, one in result.maps.items()}
     on = f", {_label(grid)}" if len(plan.grids) > 1 else ""
-    drives = result.study.drives
-    driven = {
-        case.name: tuple(name for name in case.routes if name in drives)
-        for case in result.study.cases
-    }
+    driven = {case.name: tuple(dict.fromkeys(case.routes)) for case in result.study.cases}
     single = {key: maps[key] for key in single_maps(result)}
     views: list[MapView] = []
     for speed in (None, *plan.speeds):
@@ -105,7 +101,7 @@ def _worst(result: StudyResult, maps: list[StudyMap], title: str, grid: MapGrid)
     return MapView(
         title=title,
         classes=envelope_of([one.classes for one in maps]),
-        routes=tuple(result.study.drives),
+        routes=(*result.study.drives, *result.study.sources),
         numbers={
             name: np.max([one.numbers[name] for one in maps], axis=0) for name in maps[0].numbers
         },
@@ -178,9 +174,13 @@ def _view(result: StudyResult, view: MapView) -> dict[str, Any]:
 
 
 def _lines(result: StudyResult) -> dict[str, Array]:
-    """Return routes in plan [m]."""
+    """Return routes, and ways of other sources, in plan [m]."""
     study = result.study
-    return {name: study.way_in_plan(drive.route) for name, drive in study.drives.items()}
+    lines = {name: study.way_in_plan(drive.route) for name, drive in study.drives.items()}
+    for name, source in study.sources.items():
+        places = np.concatenate([place for place, _ in source.way()])
+        lines[name] = study.in_plan(places[:: max(1, len(places) // 40)], source.on)
+    return lines
 
 
 def _places(result: StudyResult) -> dict[str, Array]:
@@ -193,8 +193,17 @@ def _places(result: StudyResult) -> dict[str, Array]:
 
 
 def _on(result: StudyResult, routes: Sequence[str], on: str | None) -> list[str]:
-    """Return the routes that lie on a surface."""
-    return [name for name in routes if on in result.study.drives[name].route.visited]
+    """Return the routes and other sources that lie on a surface."""
+    study = result.study
+    return [
+        name
+        for name in routes
+        if (
+            on in study.drives[name].route.visited
+            if name in study.drives
+            else study.sources[name].on == on
+        )
+    ]
 
 
 def _readings(rows: np.ndarray) -> list[list[float | None]]:

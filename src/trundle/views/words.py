@@ -41,7 +41,11 @@ def written(value: float, digits: int = 3) -> str:
 
 def shown(units: str) -> tuple[str, float]:
     """Return the unit that engineers read a quantity in, and its size in SI."""
-    units_of_people = {"m/s2": ("gal", GAL), "m/s": ("um/s", MICROMETRE_PER_SECOND)}
+    units_of_people = {
+        "m/s2": ("gal", GAL),
+        "m/s": ("um/s", MICROMETRE_PER_SECOND),
+        "m/s1.75": ("m/s^1.75", 1.0),
+    }
     return units_of_people.get(units, (units, 1.0))
 
 
@@ -81,6 +85,8 @@ def rule_name(averaging: Averaging) -> str:
 
 def road_words(study: Study) -> list[str]:
     """Return what each road is: its label, level and Gd(n0)."""
+    if not study.drives:
+        return ["none: nobody drives"]
     return [
         f"{label}: {road.level.replace('_', ' ')} of class {road.name}, Gd(n0) = "
         f"{1e6 * road.roughness:.3g}e-6 m3"

@@ -16,6 +16,7 @@ from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.report.figures.routes import draw_route, draw_wheel_tracks
+from trundle.report.figures.sources import draw_sources
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure.building import Building, Column, Slab, Wall
@@ -76,6 +77,7 @@ def storey_figure(study: Study, building: Building, name: str) -> Figure:
         if len(line):
             draw_wheel_tracks(axes, study, drive, COLOURS[i % 6], on=name)
             draw_route(axes, line, f"{route}, {in_kmh(drive.route.law.fastest)}", i)
+    draw_sources(axes, study, study.sources, on=name, labels=True)
     for point, spot in study.points.items():
         if spot.on in (name, None):
             place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]

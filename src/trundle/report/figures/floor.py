@@ -16,6 +16,7 @@ from trundle._typing import Array
 from trundle._words import in_kmh
 from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.report.figures.routes import draw_wheel_tracks
+from trundle.report.figures.sources import draw_sources
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure import FloorPlan, Structure
@@ -112,6 +113,7 @@ def plan_figure(study: Study, plan: FloorPlan) -> Figure:
             color=colour,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
         )
+    draw_sources(axes, study, study.sources, on=None, labels=True)
     for name, spot in study.points.items():
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         axes.plot(*place, marker="X", markersize=9, color="black", linestyle="none")
@@ -157,7 +159,9 @@ def _draw_edges(axes: Axes, plan: FloorPlan) -> None:
         label = None if kind in shown else f"{kind} edge"
         axes.plot(x, y, color="black", linestyle=line, linewidth=width, label=label, zorder=1.5)
         shown.add(kind)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=3)
+    figure = axes.get_figure()
+    assert figure is not None  # it was made with these axes
+    figure.legend(loc="outside lower center", ncols=3)
 
 
 def section_figure(plan: FloorPlan) -> Figure:

@@ -15,14 +15,16 @@ from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
 from trundle.report.canvas import COLOURS, Drawing, class_colours, new_figure
+from trundle.report.figures.sources import draw_sources
 from trundle.response.quantities import Quantity, mapped
 from trundle.results.study_result import StudyResult
 from trundle.structure.building import Building
+from trundle.study.map_plan import MapGrid
 from trundle.study.model import Study
 from trundle.views.map import MapView, class_names, class_ranks, map_views
 from trundle.views.words import shown
 
-__all__ = ["draw_building", "drawings"]
+__all__ = ["draw_building", "draw_image", "draw_panels", "drawings"]
 
 _COLUMNS = 4
 
@@ -63,13 +65,30 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         draw=lambda: share_map_figure(study, views),
     )
     for quantity, how in mapped():
-        if how.of == "velocity" or plan.peaks:
+        if {"velocity": True, "acceleration": plan.peaks, "felt": plan.people}[how.of]:
             yield Drawing(
                 name=how.figure,
                 title=how.title,
-                caption=about,
+                caption=f"{_worst_words(views, quantity)} {about}",
                 draw=lambda quantity=quantity: level_map_figure(study, views, quantity),
             )
+
+
+def _worst_words(views: list[MapView], quantity: Quantity) -> str:
+    """Say where a quantity is largest, and under what."""
+    unit, scale = shown(quantity.units)
+    best = max(views, key=lambda view: _largest(view.numbers[quantity.name]))
+    values = best.numbers[quantity.name]
+    if not np.isfinite(values).any():
+        return ""
+    at = int(np.nanargmax(values))
+    x, y = best.grid.xy[at]
+    named = f"{values[at] / scale:.3g}" + (f" {unit}" if unit != "1" else "")
+    return f"Largest: {named} at ({x:.1f}, {y:.1f}) m, {best.title}."
+
+
+def _largest(values: Array) -> float:
+    return float(np.nanmax(values)) if np.isfinite(values).any() else -np.inf
 
 
 def class_map_figure(study: Study, views: list[MapView]) -> Figure:
@@ -78,7 +97,7 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
     assert plan is not None  # there are views
     names = class_names(views[0].classes)
     colours = class_colours(len(names))
-    figure, panels = _panels(study, views)
+    figure, panels = draw_panels(study, [view.title for view in views])
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     for panel, view in zip(panels, views, strict=True):
         levels = class_ranks(view.classes)
@@ -100,7 +119,7 @@ def criterion_map_figure(study: Study, views: list[MapView]) -> Figure:
     """Draw the margin to one criterion at every place of every view; below 1 it fails."""
     plan = study.map
     assert plan is not None  # there are views
-    figure, panels = _panels(study, views)
+    figure, panels = draw_panels(study, [view.title for view in views])
     image = None
     for panel, view in zip(panels, views, strict=True):
         margin = view.classes.margin[view.classes.index(plan.criterion)]
@@ -129,7 +148,7 @@ def share_map_figure(study: Study, views: list[MapView]) -> Figure:
     """Draw the share of runs above one criterion at every place of every view."""
     plan = study.map
     assert plan is not None  # there are views
-    figure, panels = _panels(study, views)
+    figure, panels = draw_panels(study, [view.title for view in views])
     image = None
     for panel, view in zip(panels, views, strict=True):
         share = 100.0 * view.classes.share_exceeding[view.classes.index(plan.criterion)]
@@ -146,7 +165,7 @@ def level_map_figure(study: Study, views: list[MapView], quantity: Quantity) -> 
     levels = [view.numbers[quantity.name] / scale for view in views]
     plan = study.map
     assert plan is not None  # there are views
-    figure, panels = _panels(study, views)
+    figure, panels = draw_panels(study, [view.title for view in views])
     # Where nothing moves, as on a held edge, there is no place on a logarithmic scale.
     levels = [np.where(level > 0.0, level, np.nan) for level in levels]
     seen = np.concatenate([level[np.isfinite(level)] for level in levels])
@@ -158,17 +177,21 @@ def level_map_figure(study: Study, views: list[MapView], quantity: Quantity) -> 
         image = _image(panel, study, view, level, cmap="cividis_r", norm=norm)
     if image is not None:
         bar = _bar(figure, image, panels)
-        bar.set_label(f"{quantity.heading} [{unit}]")
+        unit = f" [{unit}]" if unit != "1" else ""
+        bar.set_label(f"{quantity.heading or quantity.long_name}{unit}")
         ticks = [float(f"{v:.2g}") for v in np.geomspace(low, high, 6)[1:-1]]
         bar.set_ticks(ticks, labels=[f"{tick:g}" for tick in ticks])
         bar.ax.minorticks_off()
     return figure
 
 
-def _panels(study: Study, views: list[MapView]) -> tuple[Figure, list[Axes]]:
+def draw_panels(
+    study: Study, titles: list[str], *, columns: int = _COLUMNS
+) -> tuple[Figure, list[Axes]]:
+    """Return a figure with a panel for each of several maps of a study's floor."""
     (x0, x1), (y0, y1) = study.extent
-    columns = min(_COLUMNS, len(views))
-    rows = -(-len(views) // columns)
+    n, columns = len(titles), min(columns, _COLUMNS, len(titles))
+    rows = -(-n // columns)
     width = 8.4 / columns
     height = min(max(width * (y1 - y0) / (x1 - x0), 1.0), 5.0)
     figure, panels = new_figure(
@@ -177,16 +200,16 @@ def _panels(study: Study, views: list[MapView]) -> tuple[Figure, list[Axes]]:
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.set(h_pad=0.1)  # pyright: ignore[reportCallIssue] - titles of the first row fit
-    for panel in panels[len(views) :]:
+    for panel in panels[n:]:
         panel.set_visible(False)
-    for panel, view in zip(panels, views, strict=False):
-        panel.set_title(view.title, fontsize=9)
+    for panel, title in zip(panels, titles, strict=False):
+        panel.set_title(title, fontsize=9)
         panel.grid(visible=False)
-    for i, panel in enumerate(panels[: len(views)]):
-        panel.set(xlabel="x [m]" if i + columns >= len(views) else "")
+    for i, panel in enumerate(panels[:n]):
+        panel.set(xlabel="x [m]" if i + columns >= n else "")
         panel.set(ylabel="y [m]" if i % columns == 0 else "")
-        panel.tick_params(labelbottom=i + columns >= len(views))
-    return figure, panels[: len(views)]
+        panel.tick_params(labelbottom=i + columns >= n)
+    return figure, panels[:n]
 
 
 def _bar(figure: Figure, image: QuadMesh, panels: list[Axes]) -> Colorbar:
@@ -194,32 +217,45 @@ def _bar(figure: Figure, image: QuadMesh, panels: list[Axes]) -> Colorbar:
 
 
 def _image(panel: Axes, study: Study, view: MapView, values: Array, **look: object) -> QuadMesh:
+    return draw_image(panel, study, (view.grid, view.routes), values, **look)
+
+
+def draw_image(
+    panel: Axes,
+    study: Study,
+    what: tuple[MapGrid, tuple[str, ...]],
+    values: Array,
+    **look: object,
+) -> QuadMesh:
+    """Draw values on the places of a grid, with routes, other sources, points and the building."""
+    grid, routes = what
     image = panel.pcolormesh(
-        view.grid.x,
-        view.grid.y,
-        view.grid.filled(values),
+        grid.x,
+        grid.y,
+        grid.filled(values),
         shading="nearest",
         rasterized=True,
         **look,  # pyright: ignore[reportArgumentType] - colours, as matplotlib takes them
     )
     panel.set(xlim=study.extent[0], ylim=study.extent[1], aspect="equal")
     panel.set_facecolor("#D9D9D9")  # where nothing is assessed
-    if not view.grid.there.all():
-        _draw_nothing(panel, view)
-    for name in view.routes:
-        route = study.drives[name].route
-        if view.grid.on not in route.visited:
+    if not grid.there.all():
+        _draw_nothing(panel, grid)
+    for name in routes:
+        drive = study.drives.get(name)
+        if drive is None or grid.on not in drive.route.visited:
             continue
-        line = study.way_in_plan(route, view.grid.on).T
+        line = study.way_in_plan(drive.route, grid.on).T
         panel.plot(*line, color="white", linewidth=2.4)
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
+    draw_sources(panel, study, routes, on=grid.on)
     for spot in study.points.values():
-        if (spot.on, spot.axis) != (view.grid.on, view.grid.axis):
+        if (spot.on, spot.axis) != (grid.on, grid.axis):
             continue
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")
     if study.building is not None:
-        draw_building(panel, study.building, view.grid.on or next(iter(study.floor.surfaces)))
+        draw_building(panel, study.building, grid.on or next(iter(study.floor.surfaces)))
     if study.plan is not None and study.plan.column:
         x, y = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
         panel.plot(x.ravel(), y.ravel(), "s", markersize=2, color=COLOURS[7])
@@ -244,13 +280,13 @@ def draw_building(panel: Axes, building: Building, on: str) -> None:
             panel.add_patch(Polygon(column.footprint, facecolor=COLOURS[7]))
 
 
-def _draw_nothing(panel: Axes, view: MapView) -> None:
+def _draw_nothing(panel: Axes, grid: MapGrid) -> None:
     """Leave white where there is no floor, for grey is where nothing is assessed."""
     panel.set_facecolor("white")
     panel.pcolormesh(
-        view.grid.x,
-        view.grid.y,
-        np.where(view.grid.there, 0.0, np.nan),
+        grid.x,
+        grid.y,
+        np.where(grid.there, 0.0, np.nan),
         shading="nearest",
         cmap=ListedColormap(["#D9D9D9"]),
         zorder=0.5,

@@ -14,6 +14,7 @@ from trundle._words import in_kmh
 from trundle.report.canvas import Drawing, new_figure
 from trundle.report.figures.building import storey_modes_figure
 from trundle.report.figures.routes import draw_route
+from trundle.report.figures.sources import draw_sources
 from trundle.results.study_result import StudyResult
 from trundle.structure import Surface
 from trundle.study.model import Study
@@ -70,6 +71,7 @@ def plan_figure(study: Study, name: str) -> Figure:
         line = study.way_in_plan(drive.route, name)
         if len(line):
             draw_route(axes, line, f"{route}, {in_kmh(drive.route.law.fastest)}", i)
+    draw_sources(axes, study, study.sources, on=name, labels=True)
     for point, spot in study.points.items():
         if spot.on in {name, None}:
             place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]

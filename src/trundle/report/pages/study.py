@@ -13,6 +13,7 @@ from trundle.errors import InputError
 from trundle.report.canvas import Drawing, class_colours
 from trundle.report.figures import (
     building,
+    day,
     floor,
     given_road,
     map,
@@ -28,6 +29,7 @@ from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import Structure, self_weight_deflection
 from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.views.days import day_views, together_lines
 from trundle.views.map import map_payload
 from trundle.views.printed import bound_rows, comparison_rows
 from trundle.views.tables import exact_rows, summary_headings, summary_rows, truncation_rows
@@ -45,6 +47,7 @@ _FILES = (
     given_road,
     vehicle,
     response,
+    day,
     map,
 )  # in the order of the page
 
@@ -111,6 +114,8 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         roads=road_words(study),
         matrix=matrix,
         verdict=headline(result),
+        together=together_lines(result),
+        days=day_views(result),
         mesh="" if result.mesh is None else mesh_words(result.mesh),
         warnings=result.warnings(),
         provenance=result.provenance,

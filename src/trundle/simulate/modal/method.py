@@ -25,9 +25,9 @@ from trundle.simulate.wheels.standing import StandingWheels
 from trundle.structure import Structure
 from trundle.vehicle import Vehicle
 
-__all__ = ["FloorInModes", "Modal"]
+__all__ = ["MODES_BEYOND", "FloorInModes", "Modal"]
 
-_MODES_BEYOND = 1.25  # times a band's upper edge must the modes reach, for 3 % in its level
+MODES_BEYOND = 1.25  # times a band's upper edge must the modes reach, for 3 % in its level
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +74,7 @@ class Modal:
         7 % with modes to 100 Hz, 3 % to 112 Hz, 2 % to 125 Hz; the 63 Hz band with modes to 90 Hz
         1.5 %.
         """
-        return min(self.f_max / _MODES_BEYOND, TOP / self.dt)
+        return min(self.f_max / MODES_BEYOND, TOP / self.dt)
 
     def doubts(self) -> tuple[FitnessWarning, ...]:
         """Return what a result must say of step and modes."""
@@ -92,7 +92,7 @@ class Modal:
                 subject="modal truncation",
                 message=f"modes above {self.f_max:g} Hz are left out; they follow the wheels "
                 "without delay (static residual flexibility), not with their own resonance: "
-                f"levels to {self.f_max / _MODES_BEYOND:.3g} Hz were within 3 % on the reference "
+                f"levels to {self.f_max / MODES_BEYOND:.3g} Hz were within 3 % on the reference "
                 "unit, and bands that reach above are not assessed",
             )
         )

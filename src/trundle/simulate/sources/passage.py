@@ -46,14 +46,18 @@ class Passage:
     ----------
     crossing : Crossing
         Who drives where.
+    number : int
+        Which passage on its route it is, where there are several: all meet the same road.
     """
 
     crossing: Crossing
+    number: int = 1
 
     @property
     def name(self) -> str:
-        """Name of its route."""
-        return self.crossing.route.name
+        """Name of its route, with its number behind the first."""
+        name = self.crossing.route.name
+        return name if self.number == 1 else f"{name} ({self.number})"
 
     @property
     def contact_names(self) -> tuple[str, ...]:
@@ -79,6 +83,16 @@ class Passage:
     def random(self) -> bool:
         """Whether its road is drawn anew for every run."""
         return self.crossing.road.spectrum is not None
+
+    @property
+    def varies(self) -> bool:
+        """Whether anything but its road is random: nothing is."""
+        return False
+
+    @property
+    def complete(self) -> bool:
+        """Whether its road holds all waves that there are: none does."""
+        return False
 
     @property
     def leaves(self) -> float:

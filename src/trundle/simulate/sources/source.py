@@ -132,6 +132,16 @@ class Source(Protocol):
         ...
 
     @property
+    def varies(self) -> bool:
+        """Whether its inputs differ from run to run in any other way: no road scales them."""
+        ...
+
+    @property
+    def complete(self) -> bool:
+        """Whether what it puts in is all that there is of it, in every band."""
+        ...
+
+    @property
     def leaves(self) -> float:
         """Time at which its last contact leaves [s]; infinity if none ever does."""
         ...
@@ -194,6 +204,8 @@ class KnownForces:
     standing = False
     level = False
     random = False
+    varies = False
+    complete = True
 
     def begins(self, dt: float) -> float:
         """Return 0: it acts from the record's start."""

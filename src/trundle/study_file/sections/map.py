@@ -31,7 +31,8 @@ from trundle.study_file.kinds import SectionKind
 __all__ = ["MAP", "build", "fields"]
 
 _MANY = 1_000_000
-_MAPPED = ("band_rms_velocity", "peak_acceleration")  # quantities that a map can be held against
+# quantities that a map can be held against
+_MAPPED = ("band_rms_velocity", "peak_acceleration", "response_factor")
 _RUNS = 200  # of a map, unless the study says otherwise
 _MOST_PLACES = 20_000
 _MOST_BYTES = 4e9  # of levels, or of contact forces, held at once
@@ -51,6 +52,7 @@ class MapSection(Section):
     speeds: Annotated[tuple[Speed, ...], Field(max_length=20)] = ()
     every_step: Flag = False
     peaks: Flag = False
+    people: Flag = False
 
 
 MAP = SectionKind(name="map", schema=MapSection, form="table")
@@ -219,6 +221,7 @@ def _plan(given: _Checked) -> MapPlan:
         traffic=section.traffic,
         every_step=section.every_step,
         peaks=section.peaks or any(c.quantity == "peak_acceleration" for c in criteria),
+        people=section.people or any(c.quantity == "response_factor" for c in criteria),
         speeds=tuple(sorted(set(section.speeds))),
     )
 

@@ -31,8 +31,11 @@ from trundle.study_file.fields import (
 from trundle.study_file.given_roads import given_road_problems
 from trundle.study_file.kinds import SectionKind
 
-__all__ = ["ROAD", "ROUGHNESS", "build", "fields", "problems", "road_label"]
+__all__ = ["NO_ROAD", "ROAD", "ROUGHNESS", "build", "fields", "problems", "road_label"]
 
+
+NO_ROAD = "no road"
+"""Label of the road of a study in which nobody drives."""
 
 _Class = Literal["A", "B", "C", "D", "E", "F", "G", "H"]
 
@@ -118,6 +121,8 @@ def _with_band(draft: Draft) -> tuple[Draft, list[Problem]]:
 def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     """Return the draft with its waves and roads."""
     draft, found = _with_band(draft)
+    if "road" not in draft.file.given:  # people and machines need none
+        return replace(draft, roads={NO_ROAD: Profile.smooth()}), found
     roads: dict[str, Road] = {}
     for i, section in draft.file.lists.get("road", []):
         key = next(key for key in _WAYS if getattr(section, key))

@@ -39,6 +39,7 @@ from trundle.study_file.fields import (
     Place,
     Section,
     Speed,
+    Time,
 )
 from trundle.study_file.kinds import SectionKind
 from trundle.study_file.way_checks import off_slabs, wheels_off
@@ -121,7 +122,27 @@ class TrafficSection(Section):
     """Several routes driven at once."""
 
     name: GroupName
-    routes: Annotated[tuple[Name, ...], Field(min_length=2)]
+    routes: Annotated[tuple[Name, ...], Field(min_length=2, max_length=100)]
+    departures: tuple[AnyTime, ...] | None = None
+    headway: Time | None = None
+
+    @model_validator(mode="after")
+    def _check_times(self) -> Self:
+        rule = ""
+        if self.departures is not None and self.headway is not None:
+            rule = "give departures, or a headway between one route and the next"
+        elif self.departures is not None and len(self.departures) != len(self.routes):
+            rule = f"{len(self.routes)} routes need as many departures; got {len(self.departures)}"
+        if rule:
+            raise PydanticCustomError("rule", "{rule}", {"rule": rule})
+        return self
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """When each departs [s]."""
+        if self.headway is not None:
+            return tuple(self.headway * i for i in range(len(self.routes)))
+        return self.departures or (0.0,) * len(self.routes)
 
 
 ROUTE = SectionKind(name="route", schema=RouteSection, form="list", required=True)
@@ -172,7 +193,9 @@ def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the sections."""
     alone = (*draft.drives, *draft.sources)
     singles = tuple(Case(name=name, routes=(name,)) for name in alone)
-    traffic = tuple(Case(name=t.name, routes=t.routes) for t in draft.file.items("traffic"))
+    traffic = tuple(
+        Case(name=t.name, routes=t.routes, departs=t.times) for t in draft.file.items("traffic")
+    )
     return {"drives": draft.drives, "sources": draft.sources, "cases": singles + traffic}
 
 
@@ -198,13 +221,29 @@ def _traffic(draft: Draft) -> Iterator[Problem]:
             place = f"traffic[{i + 1}].routes[{j + 1}]"
             known = draft.file.declared["route"] | set(draft.sources)
             yield from refer(place, route, known, "route")
-        if len(set(section.routes)) < len(section.routes):
-            yield Problem(
-                place=f"traffic[{i + 1}].routes",
-                value=", ".join(section.routes),
-                rule="a route can carry one vehicle at a time",
-                remedy="name each route once",
-            )
+        for name, times in _times_of(section).items():
+            if len(set(times)) < len(times):
+                yield Problem(
+                    place=f"traffic[{i + 1}].routes",
+                    value=", ".join(section.routes),
+                    rule="a route can carry one vehicle at a time",
+                    remedy="name each route once, or give each its own time in departures",
+                )
+            elif len(times) > 1 and name in draft.sources:
+                yield Problem(
+                    place=f"traffic[{i + 1}].routes",
+                    value=f"{name!r} {len(times)} times",
+                    rule="people and machines are there once; their own keys say when and how many",
+                    remedy="name it once",
+                )
+
+
+def _times_of(section: TrafficSection) -> dict[str, list[float]]:
+    """Return when each route of a section is departed on [s]."""
+    out: dict[str, list[float]] = {}
+    for name, time in zip(section.routes, section.times, strict=True):
+        out.setdefault(name, []).append(time)
+    return out
 
 
 def _off_the_floor(draft: Draft, extent: Extent) -> Iterator[Problem]:

@@ -1,0 +1,109 @@
+"""Say what is left out where two vehicles on a floor are added up instead of run together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from trundle._typing import Array
+from trundle.simulate import Layout, PreparedFloor, Source, ensemble
+from trundle.simulate.sources.passage import Passage
+from trundle.structure import Spot
+from trundle.traffic.timetable import Departures
+
+__all__ = ["closest_meeting", "meeting_error"]
+
+
+def closest_meeting(
+    layouts: Mapping[str, Layout], departures: Departures
+) -> tuple[str, str, float] | None:
+    """Return the two vehicles that depart closest after each other and meet on the floor.
+
+    Parameters
+    ----------
+    layouts : mapping of str to Layout
+        One passage on each route.
+    departures : Departures
+        Who departs when.
+
+    Returns
+    -------
+    tuple or None
+        Route of the first and of the second, and how much later that departs [s].
+    """
+    leaves = {name: max(s.leaves for s in one.sources) for name, one in layouts.items()}
+    vehicles = {
+        name for name, one in layouts.items() if all(isinstance(s, Passage) for s in one.sources)
+    }
+    found: tuple[str, str, float] | None = None
+    names = [departures.route[i] for i in departures.which]
+    driving = [(t, n) for t, n in zip(departures.time, names, strict=True) if n in vehicles]
+    for (earlier, first), (later, second) in pairwise(driving):
+        gap = float(later - earlier)
+        if gap < leaves[first] and (found is None or gap < found[2]):
+            found = (first, second, gap)
+    return found
+
+
+def meeting_error(
+    floor: PreparedFloor,
+    layouts: Mapping[str, Layout],
+    departures: Departures,
+    points: Mapping[str, Spot],
+    *,
+    seed: int,
+) -> float:
+    """Return by how much the closest meeting differs if both are run together.
+
+    Parameters
+    ----------
+    floor : PreparedFloor
+        The floor.
+    layouts : mapping of str to Layout
+        One passage on each route.
+    departures : Departures
+        Who departs when.
+    points : mapping of str to Spot
+        Where the response is read.
+    seed : int
+        Seed of all roads.
+
+    Returns
+    -------
+    float
+        RMS of the difference over RMS of the velocity at a point, the largest of all; 0 where
+        vehicles do not feel the floor, NaN where none meet.
+    """
+    met = closest_meeting(layouts, departures)
+    if met is None:
+        return np.nan
+    first, second, gap = met
+    method = layouts[first].method
+    if not method.moves:
+        return 0.0
+    dt = method.integration.dt
+    both = (layouts[first].sources[0], _later(layouts[second].sources[0], round(gap / dt) * dt))
+    length = max(source.leaves for source in both) + 5.0
+
+    def velocity(*sources: Source) -> Array:
+        """Return what some of them give together."""
+        return ensemble(
+            floor, sources, method=method, points=points, n_runs=1, seed=seed, duration=length
+        ).velocity[0]
+
+    together, alone = velocity(*both), [velocity(one) for one in both]
+    return float(np.max(_rms(together - sum(alone)) / np.maximum(_rms(together), 1e-300)))
+
+
+def _later(source: Source, by: float) -> Source:
+    """Return a passage that departs later [s]."""
+    assert isinstance(source, Passage)  # who is no vehicle meets nobody
+    crossing = source.crossing
+    return Passage(crossing=replace(crossing, depart=crossing.depart + by))
+
+
+def _rms(values: Array) -> Array:
+    return np.sqrt(np.mean(values**2, axis=0))

@@ -13,6 +13,7 @@ from trundle import __version__
 from trundle.cli import options
 from trundle.cli.models import models
 from trundle.cli.vehicles import vehicles
+from trundle.cli.walking import walking
 from trundle.errors import ComputationError, InputError
 
 __all__ = ["app", "main"]
@@ -239,6 +240,7 @@ def new(
 
 
 app.add_typer(models)
+app.add_typer(walking)
 app.add_typer(vehicles, name="vehicles")
 
 

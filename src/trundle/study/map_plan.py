@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,7 +14,7 @@ from trundle.criteria import Criterion
 from trundle.signals import Averaging
 from trundle.structure import Axis, Spots, Surface
 
-__all__ = ["MapGrid", "MapPlan", "map_places"]
+__all__ = ["MapGrid", "MapPlan", "grids_over", "map_places"]
 
 _MOST = 300  # places of a map unless a spacing is given: half a minute for 1000 runs
 
@@ -182,3 +182,22 @@ def map_places(
         spacing = float(np.sqrt(length * (other[1] - other[0]) / _MOST))
     n = max(2, int(np.ceil(length / spacing - 1e-9)))
     return extent[0] + (np.arange(n) + 0.5) * length / n
+
+
+def grids_over(surfaces: Mapping[str, Surface], spacing: float | None) -> tuple[MapGrid, ...]:
+    """Return places of vertical motion on every surface of a floor.
+
+    Parameters
+    ----------
+    surfaces : mapping of str to Surface
+        All surfaces of the floor.
+    spacing : float or None
+        Distance of places, at most [m]; so that each surface has 300 unless given.
+    """
+    grids: list[MapGrid] = []
+    for name, surface in surfaces.items():
+        low, high = (surface.frame.to_plan(corner[None])[0] for corner in surface.extent)
+        x, y = (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
+        lines = map_places(x, spacing, y), map_places(y, spacing, x)
+        grids.append(MapGrid.over(*lines, surface, name if len(surfaces) > 1 else None))
+    return tuple(grids)

@@ -24,7 +24,7 @@ from trundle.study.model import Study
 from trundle.views.map import MapView, class_names, class_ranks, map_views
 from trundle.views.words import shown
 
-__all__ = ["draw_image", "draw_panels", "drawings"]
+__all__ = ["draw_building", "draw_image", "draw_panels", "drawings"]
 
 _COLUMNS = 4
 
@@ -255,14 +255,14 @@ def draw_image(
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")
     if study.building is not None:
-        _draw_building(panel, study.building, grid.on or next(iter(study.floor.surfaces)))
+        draw_building(panel, study.building, grid.on or next(iter(study.floor.surfaces)))
     if study.plan is not None and study.plan.column:
         x, y = np.meshgrid(study.plan.x_lines, study.plan.y_lines)
         panel.plot(x.ravel(), y.ravel(), "s", markersize=2, color=COLOURS[7])
     return image
 
 
-def _draw_building(panel: Axes, building: Building, on: str) -> None:
+def draw_building(panel: Axes, building: Building, on: str) -> None:
     """Draw the outlines of slabs and openings, columns and walls of a storey."""
     for slab in building.slabs:
         if slab.on == on:

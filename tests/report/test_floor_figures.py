@@ -123,8 +123,9 @@ def test_levels_on_a_map_are_those_of_its_numbers(result):
     names = drawn(map_figures, result)
     scales = {"map_rms": MICROMETRE_PER_SECOND, "map_peak": GAL}
     labels = {"map_rms": "record RMS velocity [um/s]", "map_peak": "peak acceleration [gal]"}
-    assert {how.figure for _, how in mapped()} == set(scales)
-    for quantity, how in mapped():
+    moved = [(quantity, how) for quantity, how in mapped() if how.of != "felt"]
+    assert {how.figure for _, how in moved} == set(scales)
+    for quantity, how in moved:
         figure = names[how.figure].draw()
         panel, bar = figure.axes[0], figure.axes[-1]
         image = image_of(panel)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from models import small_floor, small_plan
-from trundle.criteria import VC, class_map, envelope_of
+from trundle.criteria import VC, class_map, envelope_of, find_criterion, watched
 from trundle.dynamics import natural_modes
 from trundle.errors import InputError
 from trundle.response import FloorMap, floor_map, reduce_runs
@@ -15,6 +15,7 @@ from trundle.route import DriveIn, Route, StaticStart
 from trundle.signals import mid_band_frequencies
 from trundle.simulate import (
     Coupled,
+    Coverage,
     Crossing,
     Decoupled,
     Modal,
@@ -87,6 +88,41 @@ def test_a_map_is_what_histories_at_its_places_give(kind):
         rtol=0.015,
     )  # fmt: skip
     np.testing.assert_allclose(seconds.band_levels[..., low], expected[..., low], rtol=0.06)
+
+
+def test_a_map_of_what_people_feel_and_of_time_above_is_what_histories_give():
+    """R and VDV of 12 nodes to 1e-3; time above curves to some steps of 1/20 s.
+
+    Both weight by lines; a history's end is cut, where the map's rings on, so that a response that
+    is not quite at rest leaves the little that differs.
+    """
+    method = Decoupled(integration=Modal(f_max=112.0, dt=0.005), damping=ModalRatio(ratio=0.08))
+    prepared = prepared_floor(method)
+    nodes, points = random_nodes(prepared.floor, 12)
+    settings = {"method": method, "points": points, "duration": DURATION}
+    runs = ensemble(prepared, way(), n_runs=RUNS, seed=SEED, **settings)
+    layout = lay_out(prepared, way(), **settings)
+    responses = lay_out_places(prepared, layout, Spots(xy=nodes), single=False)
+    forces = np.transpose(runs.contact_forces, (1, 2, 0))
+    some = (*VC[:6:2], find_criterion("R-office"))
+    curves, _ = watched(
+        some, f_max=layout.f_max, sampling_frequency=200.0, coverage=Coverage(excited_to=90.0)
+    )
+    found = floor_map(responses, forces, f_max=layout.f_max, people=True, curves=curves)
+    histories = reduce_runs(runs, curves=curves)
+    np.testing.assert_allclose(
+        found.numbers["response_factor"], histories.response_factor, rtol=1e-3
+    )
+    np.testing.assert_allclose(found.numbers["vdv"], histories.vdv, rtol=1e-3)
+    seen = 0
+    for curve in curves:
+        expected = histories.above[curve.name]
+        np.testing.assert_allclose(found.above[curve.name], expected, atol=0.25)
+        seen += ((expected > 0.5) & (expected < 8.0)).any()
+    assert seen > 1  # some curves are exceeded for a while, and not for ever
+    without = floor_map(responses, forces, f_max=layout.f_max, curves=curves)
+    assert np.isnan(without.numbers["vdv"]).all()
+    assert np.isnan(without.above["R-office"]).all()
 
 
 def test_a_map_of_a_floor_that_rings_long_is_what_histories_give():

@@ -123,7 +123,7 @@ def test_traffic_is_mapped_when_asked_for(tmp_path):
         (LONG + MAP.replace('"VC-A"', '"VC-Z"'), "map.criterion"),
         (LONG + MAP.replace('"3 m"', '"1 mm"'), "20000 places"),
         (LONG.replace('["VC-A"]', '["VC-A"]\naveraging = "slow"') + MAP, "max_1s or event"),
-        (LONG.replace('["VC-A"]', '["R-office"]') + "\n[map]\n", "no curve that can be mapped"),
+        (LONG.replace('["VC-A"]', '["VDV-office-low"]') + "\n[map]\n", "no curve that can be mapped"),
         (LONG[: LONG.index("[criteria]")] + MAP, "add \\[criteria\\]"),
         (
             LONG.replace(

@@ -238,3 +238,12 @@ def test_departures_make_several_passages_of_one_route():
     assert second.crossing.depart == 4.0
     apart = study_from_text(text.replace('departures = ["0 s", "4 s"]', 'headway = "4 s"'))
     assert apart.cases[-1].departs == (0.0, 4.0)
+
+
+def test_what_stands_on_a_plane_of_symmetry_is_told():
+    """Half of it is beyond: neither the floor's own force nor twice it would be right."""
+    half = GOOD.replace("column = {", 'edges = { y_min = "symmetry" }\ncolumn = {')
+    text = MACHINE.replace('["9 m", "4 m"]', '["9 m", "0 m"]')
+    assert any("plane of symmetry" in one for one in told(half + text))
+    assert study_from_text(half + MACHINE).sources
+    assert study_from_text(half + WALKER.replace('"1 m"]', '"0 m"]')).sources  # ways are halved

@@ -50,6 +50,12 @@ def plan_sketch(study: Study) -> str:
         names = ", ".join(one for one in drive.route.visited if one is not None)
         on = f" on {names}" if names else ""
         legend.append(f"  {letter}  route {name}{on}: {speed:g} km/h, ends at >")
+    for i, (name, source) in enumerate(study.sources.items()):
+        letter = chr(ord("z") - i % 26)
+        places = np.concatenate([place for place, _ in source.way()])
+        _put(study.in_plan(places, source.on), letter)
+        on = "" if source.on is None else f" on {source.on}"
+        legend.append(f"  {letter}  {type(source).__name__.lower()} {name}{on}")
     for i, (name, spot) in enumerate(study.points.items()):
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)
         _put(place, str((i + 1) % 10))

@@ -13,7 +13,7 @@ from trundle.criteria.curve import (
     shaped,
 )
 from trundle.criteria.verdict import BandOutcomes, Status, Verdict
-from trundle.criteria.watched import watched
+from trundle.criteria.watching import watched
 
 __all__ = [
     "BY_FREQUENCY",

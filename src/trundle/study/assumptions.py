@@ -33,8 +33,9 @@ def assumption_warnings(study: Study) -> tuple[FitnessWarning, ...]:
         found.append(
             FitnessWarning(
                 subject="planes of symmetry",
-                message="every vehicle has a mirror image beyond each plane, which drives with it "
-                "on the same road: levels were 0.9 to 1.4 times those of one vehicle",
+                message="every vehicle, walker and machine has a mirror image beyond each plane, "
+                "which moves with it on the same road: levels were 0.9 to 1.4 times those of one "
+                "vehicle",
             )
         )
     found += _points_on_beams(study)

@@ -19,9 +19,10 @@ from trundle.structure import Structure, Surface
 from trundle.study_file.attempt import attempted
 from trundle.study_file.draft import Draft, covered, is_off, surface_at
 
-__all__ = ["off_slabs", "place_problems", "way_problems", "wheels_off"]
+__all__ = ["off_slabs", "standing_problems", "way_problems", "wheels_off"]
 
 _LOOKED_AT = 0.1  # m along a route
+_ON_PLANE = 1e-6  # m
 
 
 def off_slabs(draft: Draft) -> Iterator[Problem]:
@@ -41,10 +42,27 @@ def off_slabs(draft: Draft) -> Iterator[Problem]:
                 yield from _leg_off(f"route[{i + 1}].path[{j}]", start, end, surface)
 
 
-def place_problems(
+def _place_problems(
     draft: Draft, place: str, key: str, at: Sequence[Sequence[float]], on: str | None
 ) -> Iterator[Problem]:
-    """Give what stands off the floor, or on no storey.
+    """Give places off the floor, over no slab, or on no storey."""
+    surface, mistakes = surface_at(draft, f"{place}.on", on)
+    yield from mistakes
+    for i, one in enumerate(np.array(at, dtype=float).reshape(-1, 2)):
+        here = f"{place}.{key}" + (f"[{i + 1}]" if len(at) > 1 else "")
+        value = f"({one[0]:g}, {one[1]:g}) m"
+        if draft.extent is not None and is_off(draft.extent, (one[0], one[1])):
+            rule = f"must stand on the floor; {covered(draft.extent)}"
+            yield Problem(place=here, value=value, rule=rule, remedy="move it onto the floor")
+        elif surface is not None and not surface.holds(surface.frame.from_plan(one[None]))[0]:
+            rule = f"must stand on a slab of {surface.name!r}"
+            yield Problem(place=here, value=value, rule=rule, remedy="move it onto the slab")
+
+
+def standing_problems(
+    draft: Draft, place: str, key: str, at: Sequence[Sequence[float]], on: str | None
+) -> Iterator[Problem]:
+    """Give what stands off the floor, and what stands on a plane of symmetry, half of it beyond.
 
     Parameters
     ----------
@@ -64,17 +82,31 @@ def place_problems(
     Problem
         One for each place.
     """
-    surface, mistakes = surface_at(draft, f"{place}.on", on)
-    yield from mistakes
+    yield from _place_problems(draft, place, key, at, on)
     for i, one in enumerate(np.array(at, dtype=float).reshape(-1, 2)):
-        here = f"{place}.{key}" + (f"[{i + 1}]" if len(at) > 1 else "")
-        value = f"({one[0]:g}, {one[1]:g}) m"
-        if draft.extent is not None and is_off(draft.extent, (one[0], one[1])):
-            rule = f"must stand on the floor; {covered(draft.extent)}"
-            yield Problem(place=here, value=value, rule=rule, remedy="move it onto the floor")
-        elif surface is not None and not surface.holds(surface.frame.from_plan(one[None]))[0]:
-            rule = f"must stand on a slab of {surface.name!r}"
-            yield Problem(place=here, value=value, rule=rule, remedy="move it onto the slab")
+        if _on_mirror(draft, one, on):
+            yield Problem(
+                place=f"{place}.{key}" + (f"[{i + 1}]" if len(at) > 1 else ""),
+                value=f"({one[0]:g}, {one[1]:g}) m",
+                rule="what stands on a plane of symmetry is half beyond it, with half its force",
+                remedy="move it off the plane, where it has an image beyond; or model the whole",
+            )
+
+
+def _on_mirror(draft: Draft, place: Array, on: str | None) -> bool:
+    """Return whether a place of the plan lies on a plane of symmetry."""
+    if draft.plan is not None:
+        (x0, x1), (y0, y1) = draft.plan.x_extent, draft.plan.y_extent
+        lines = {"x_min": (0, x0), "x_max": (0, x1), "y_min": (1, y0), "y_max": (1, y1)}
+        return any(
+            draft.plan.edges.get(name) == "symmetry" and abs(place[axis] - at) < _ON_PLANE
+            for name, (axis, at) in lines.items()
+        )
+    surface, _ = surface_at(draft, "", on)
+    if draft.model is None or surface is None:
+        return False
+    space = surface.frame.in_space(surface.frame.from_plan(place[None]))
+    return any(abs(float(m.away(space)[0])) < _ON_PLANE for m in draft.model.mirrors)
 
 
 def way_problems(
@@ -98,7 +130,7 @@ def way_problems(
     Problem
         One for each corner or leg.
     """
-    off = list(place_problems(draft, place, "path", path, on))
+    off = list(_place_problems(draft, place, "path", path, on))
     yield from off
     surface, _ = surface_at(draft, f"{place}.on", on)
     if surface is None or off:

@@ -33,7 +33,7 @@ from trundle.study_file.fields import (
 )
 from trundle.study_file.fields import Unbalance as MassRadius
 from trundle.study_file.kinds import SectionKind
-from trundle.study_file.way_checks import place_problems
+from trundle.study_file.way_checks import standing_problems
 
 __all__ = ["MACHINE", "build", "problems"]
 
@@ -186,7 +186,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
     for i, section in draft.file.lists.get("machine", []):
         place = f"machine[{i + 1}]"
         key = "at" if section.feet is None else "feet"
-        yield from place_problems(draft, place, key, section.places, section.on)
+        yield from standing_problems(draft, place, key, section.places, section.on)
         machine = draft.sources.get(section.name)
         if machine is None:
             continue

@@ -232,14 +232,15 @@ def _criterion(given: _Checked) -> Iterator[Problem]:
         yield Problem(
             place="map.criterion",
             value=repr(wanted),
-            rule="must be one of the study's curves of velocity in bands, or of peak acceleration",
+            rule="must be one of the study's curves of velocity in bands, peak acceleration or "
+            "response factor",
             remedy=f"there are: {', '.join(names) or 'none'}",
         )
     elif not names:
         yield Problem(
             place="map",
             value="no curve that can be mapped",
-            rule="a map needs a curve of velocity in bands, or of peak acceleration",
+            rule="a map needs a curve of velocity in bands, peak acceleration or response factor",
             remedy='add one to criteria.curves, such as "VC-B"',
         )
 

@@ -32,7 +32,7 @@ from trundle.study_file.fields import (
     Whole,
 )
 from trundle.study_file.kinds import SectionKind
-from trundle.study_file.way_checks import place_problems, way_problems
+from trundle.study_file.way_checks import standing_problems, way_problems
 
 __all__ = ["WALKER", "build", "problems"]
 
@@ -122,7 +122,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
     for i, section in draft.file.lists.get("walker", []):
         place = f"walker[{i + 1}]"
         if section.path is None:
-            yield from place_problems(draft, place, "at", [section.at], section.on)
+            yield from standing_problems(draft, place, "at", [section.at], section.on)
         else:
             yield from way_problems(draft, place, section.path, section.on)
         walker = draft.sources.get(section.name)

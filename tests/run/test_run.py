@@ -84,7 +84,7 @@ def test_the_folder_holds_what_is_promised(folder):
     names = {entry.name for entry in folder.iterdir()}
     assert names == {
         ".trundle-results", "figures", "kept", "report.html", "results.zarr", "study.toml", "summary.csv",
-        "summary.json", "verdicts.csv",
+        "summary.json", "together.csv", "verdicts.csv",
     }  # fmt: skip
     figures = {entry.name for entry in (folder / "figures").iterdir()}
     assert {"plan.png", "plan.svg", "mesh.png", "modes.png", "comparison.png"} <= figures

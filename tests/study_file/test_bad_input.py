@@ -85,7 +85,7 @@ MISTAKES = [
     ("columns without a storey", 'storey_below = "4 m"', "", ["floor.column", "columns need storey_below"]),
     ("yes for true", "[criteria]", '[roughness]\nn_max_follows_dt = "yes"\n[criteria]', ["roughness.n_max_follows_dt", "true or false"]),
     ("text for a count", "runs = 2", 'runs = "2"', ["runs", "whole number"]),
-    ("revolutions", '"30 Hz"', '"600 rpm"', ["method[1].f_max", "not one of frequency"]),
+    ("radians", '"30 Hz"', '"600 rad/s"', ["method[1].f_max", "counts cycles"]),
     ("a length of the wrong size", '"0.2 m"', '"200 km"', ["slab_thickness", "up to 10000 m"]),
     ("a hidden name", 'name = "tool"', 'name = "."', ["point[1].name", "not beginning with"]),
     ("a control character", 'title = "Small"', 'title = "Sm\\u001b[31mall"', ["title", "control characters"]),

@@ -151,12 +151,22 @@ def class_map(
     )
 
 
-def envelope_of(maps: Sequence[ClassMap]) -> ClassMap:
+def envelope_of(maps: Sequence[ClassMap], known: Sequence[bool] | None = None) -> ClassMap:
     """Return the worst of several maps at every place: of roads, vehicles, speeds.
 
     The share of runs is that of the worst single map.
+
+    Parameters
+    ----------
+    maps : sequence of ClassMap
+        The maps.
+    known : sequence of bool, optional
+        Which are of forces that are known altogether: that they excite no higher bands keeps
+        nobody else from passing, unless all are so.
     """
     first = maps[0]
+    free = [not one for one in known] if known is not None else [True] * len(maps)
+    asked = [one for one, binds in zip(maps, free, strict=True) if binds] or list(maps)
     margins = np.stack([one.margin for one in maps])
     worst = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=0)[None]
     bands = np.stack([one.governing_band for one in maps])
@@ -167,7 +177,7 @@ def envelope_of(maps: Sequence[ClassMap]) -> ClassMap:
         governing_band=np.take_along_axis(bands, worst, axis=0)[0],
         share_exceeding=np.fmax.reduce([one.share_exceeding for one in maps]),
         applies=first.applies,
-        complete=tuple(all(flags) for flags in zip(*(one.complete for one in maps), strict=True)),
+        complete=tuple(all(flags) for flags in zip(*(one.complete for one in asked), strict=True)),
         percentile=first.percentile,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -14,7 +14,7 @@ from trundle.results.maps import MapKey, StudyMap
 from trundle.results.study_result import StudyResult
 from trundle.study.map_plan import MapGrid, MapPlan
 
-__all__ = ["map_groups", "single_maps"]
+__all__ = ["known_forces", "map_groups", "single_maps"]
 
 Variable: TypeAlias = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 """Dimensions, data and attributes, as xarray takes them."""
@@ -67,9 +67,10 @@ def _groups_of(
             )
             dataset["speed"].attrs["units"] = "m/s"
             groups[f"/map_speeds/{case.name}"] = dataset
-    single = [maps[key] for key in single_maps(result)]
+    single = {key: maps[key] for key in single_maps(result)}
     if single:
-        groups["/map_envelope"] = _envelope(grid, single)
+        known = known_forces(result, single)
+        groups["/map_envelope"] = _envelope(grid, list(single.values()), known)
     return groups
 
 
@@ -77,6 +78,12 @@ def single_maps(result: StudyResult) -> dict[MapKey, StudyMap]:
     """Return the maps of single vehicles, at all speeds."""
     alone = {case.name for case in result.study.cases if len(case.routes) == 1}
     return {key: one for key, one in result.maps.items() if key.case in alone}
+
+
+def known_forces(result: StudyResult, keys: Iterable[MapKey]) -> list[bool]:
+    """Return which maps are of sources whose forces are known altogether."""
+    sources = result.study.sources
+    return [key.case in sources and sources[key.case].complete for key in keys]
 
 
 def _dataset(
@@ -99,9 +106,9 @@ def _dataset(
     return dataset
 
 
-def _envelope(grid: MapGrid, maps: Sequence[StudyMap]) -> xr.Dataset:
+def _envelope(grid: MapGrid, maps: Sequence[StudyMap], known: Sequence[bool]) -> xr.Dataset:
     """Return the worst of maps at every place."""
-    dataset = _of_classes(grid, [envelope_of([one.classes for one in maps])], {})
+    dataset = _of_classes(grid, [envelope_of([one.classes for one in maps], known)], {})
     dataset.attrs["description"] = f"worst of {len(maps)} maps of single vehicles at every place"
     return dataset
 

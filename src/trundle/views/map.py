@@ -12,8 +12,8 @@ from jaxtyping import Int
 from trundle._typing import Array
 from trundle.criteria import ClassMap, envelope_of
 from trundle.response.quantities import mapped
-from trundle.results.map_datasets import single_maps
-from trundle.results.maps import StudyMap
+from trundle.results.map_datasets import known_forces, single_maps
+from trundle.results.maps import MapKey, StudyMap
 from trundle.results.study_result import StudyResult
 from trundle.signals import nominal_frequency
 from trundle.study.map_plan import MapGrid, MapPlan
@@ -83,12 +83,12 @@ def _views_on(result: StudyResult, plan: MapPlan, grid: MapGrid, part: slice) ->
             for key, one in maps.items()
             if key.speed == speed
         ]
-        here = [one for key, one in single.items() if key.speed == speed]
+        here = {key: one for key, one in single.items() if key.speed == speed}
         if speed is not None and here:
             views.append(_worst(result, here, f"worst{at}{on}", grid))
     if len(single) > 1:
         words = f"worst of all single routes{on}"
-        views.append(_worst(result, list(single.values()), words, grid))
+        views.append(_worst(result, single, words, grid))
     return views
 
 
@@ -97,10 +97,13 @@ def _label(grid: MapGrid) -> str:
     return grid.label or "vertical"
 
 
-def _worst(result: StudyResult, maps: list[StudyMap], title: str, grid: MapGrid) -> MapView:
+def _worst(
+    result: StudyResult, single: Mapping[MapKey, StudyMap], title: str, grid: MapGrid
+) -> MapView:
+    maps = list(single.values())
     return MapView(
         title=title,
-        classes=envelope_of([one.classes for one in maps]),
+        classes=envelope_of([one.classes for one in maps], known_forces(result, single)),
         routes=(*result.study.drives, *result.study.sources),
         numbers={
             name: np.max([one.numbers[name] for one in maps], axis=0) for name in maps[0].numbers

@@ -26,6 +26,9 @@ from trundle.study.model import Study
 __all__ = ["drawings"]
 
 
+_LABELS = (0.72, 0.4, 0.88, 0.56)  # where names stand along routes
+
+
 def drawings(result: StudyResult) -> Iterator[Drawing]:
     """Give the plan, the section, the mesh, and the first modes where there are any.
 
@@ -98,7 +101,8 @@ def plan_figure(study: Study, plan: FloorPlan) -> Figure:
             arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 2.0},
         )
         speed = in_kmh(route.law.fastest)
-        middle, direction = route.locate(np.array([0.72 * route.length]))
+        at = _LABELS[i % len(_LABELS)]  # ways may lie on each other
+        middle, direction = route.locate(np.array([at * route.length]))
         angle = float(np.degrees(np.arctan2(direction[0, 1], direction[0, 0])))
         angle = angle if -90.0 < angle <= 90.0 else angle + 180.0  # readable from below
         axes.annotate(

@@ -195,7 +195,7 @@ def draw_panels(
     width = 8.4 / columns
     height = min(max(width * (y1 - y0) / (x1 - x0), 1.0), 5.0)
     figure, panels = new_figure(
-        8.8, rows * (height + 0.3) + 1.1, rows=rows, columns=columns, share="xy"
+        8.8, rows * (height + 0.45) + 1.3, rows=rows, columns=columns, share="xy"
     )
     engine = figure.get_layout_engine()
     if engine is not None:

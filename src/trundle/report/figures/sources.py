@@ -49,6 +49,6 @@ def draw_sources(
             )  # fmt: skip
         if labels:
             axes.annotate(
-                name, xy[len(xy) // 2], xytext=(4, 4), textcoords="offset points", color=colour,
+                name, xy[len(xy) // 8], xytext=(4, -11), textcoords="offset points", color=colour,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8},
             )  # fmt: skip

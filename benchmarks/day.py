@@ -21,7 +21,7 @@ import trundle as tr
 from trundle.criteria import VC, watched
 from trundle.run.mode_cache import modes_of
 from trundle.simulate import Coupled, Crossing, Modal, batches, coverage_of, lay_out, prepare
-from trundle.traffic import Poisson, Schedule, meeting_error, on_one_day
+from trundle.traffic import Poisson, Schedule, lay_out_meeting, meeting_error, on_one_day
 
 POINTS = {"centre": tr.structure.Spot(32.5, 62.5), "bay": tr.structure.Spot(29.0, 52.0)}
 WAYS = {"rear": ((0, 76.5), (52, 76.5)), "front": ((0, 12.5), (52, 12.5))}
@@ -57,7 +57,8 @@ def watched_curves(layouts):
 
 def a_day(prepared, layouts, departures) -> dict:
     tally = on_one_day(layouts, departures, watched_curves(layouts), seed=1)
-    error = meeting_error(prepared, layouts, departures, POINTS, seed=1)
+    meeting = lay_out_meeting(prepared, layouts, departures, POINTS)
+    error = meeting_error(layouts, departures, meeting, seed=1)
     return {"busy_s": tally.busy, "at_once": tally.at_once, "meeting_error": error}
 
 

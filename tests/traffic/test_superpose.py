@@ -32,6 +32,7 @@ from trundle.traffic import (
     Times,
     closest_meeting,
     expected_day,
+    lay_out_meeting,
     meeting_error,
     on_one_day,
     superpose,
@@ -191,7 +192,7 @@ def test_what_adding_up_leaves_out_is_told(floor):
     day = departures(10.0, 11.3, 60.0)
     coupled, decoupled = laid(floor, one, kind=Coupled), laid(floor, one)
     assert closest_meeting(coupled, day) == ("way", "way", pytest.approx(1.3))
-    error = meeting_error(floor, coupled, day, POINTS, seed=SEED)
+    error = meeting_error(coupled, day, lay_out_meeting(floor, coupled, day, POINTS), seed=SEED)
     assert 1e-6 < error < 0.2
     settings = {
         "method": Coupled(integration=INTEGRATION), "points": POINTS, "n_runs": 1, "seed": SEED,
@@ -203,8 +204,12 @@ def test_what_adding_up_leaves_out_is_told(floor):
     )
     rms = np.sqrt(np.mean((joint - first - second) ** 2, axis=0) / np.mean(joint**2, axis=0))
     assert error == pytest.approx(rms.max(), rel=1e-6)
-    assert meeting_error(floor, decoupled, day, POINTS, seed=SEED) == 0.0
-    assert np.isnan(meeting_error(floor, coupled, departures(10.0, 60.0), POINTS, seed=SEED))
+    assert lay_out_meeting(floor, decoupled, day, POINTS) is None
+    assert meeting_error(decoupled, day, None, seed=SEED) == 0.0
+    far = departures(10.0, 60.0)
+    assert np.isnan(
+        meeting_error(coupled, far, lay_out_meeting(floor, coupled, far, POINTS), seed=SEED)
+    )
 
 
 @pytest.mark.slow

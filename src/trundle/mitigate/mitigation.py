@@ -90,11 +90,11 @@ def try_changes(
             carry_out(_batches(slab, of_slab, modes), who, store, bar)
             resonances |= _resonances(study, of_slab, modes, speeds)
     tell("done", 1.0)
-    found = {
-        (outcomes[0].change, one.speed, one.case.name): outcomes
-        for one in planned
-        for outcomes in _outcomes(study, one, store)
-    }
+    found: dict[tuple[str, float, str], list[Outcome]] = {}
+    for one in planned:  # roads may be run apart
+        for outcomes in _outcomes(study, one, store):
+            key = (outcomes[0].change, one.speed, one.case.name)
+            found.setdefault(key, []).extend(outcomes)
     labels, names = [change.label for change in changes], [case.name for case in study.cases]
     ordered = (found[key] for key in itertools.product(labels, speeds, names))
     return Sweep(
@@ -124,6 +124,8 @@ def check_speeds(study: Study, speeds: Sequence[float]) -> None:
     if not speeds:
         raise InputError("give at least one speed [m/s]")
     dt = min(method.interaction.integration.dt for method in study.methods)
+    if not study.drives:
+        raise InputError("nobody drives in this study: changes are compared under vehicles")
     longest = max(drive.route.length + drive.vehicle.length for drive in study.drives.values())
     for speed in speeds:
         steps = longest / speed / dt if speed > 0.0 else np.inf

@@ -93,14 +93,18 @@ def plan_changes(
     found: list[Combination] = []
     for i, together in enumerate(sharing_runs(changes)):
         rest = replace(together[0], slab_thickness=None, isolation=None)
-        changed = replace(changed_study(study, rest), roads=classes, runs=runs, map=None)
+        changed = replace(
+            changed_study(study, rest), roads=classes, runs=runs, map=None, schedules={}
+        )
         changed = replace(changed, methods=(assessed(changed)[1],))
         for (j, speed), (k, case) in itertools.product(enumerate(speeds), enumerate(study.cases)):
             there = replace(changed.at_speed(speed), cases=(case,))
             acting = there.acting(case, roads[0], there.methods[0])
-            (job,) = plan_jobs(replace(there, duration=there.long_enough(acting)))
-            job = replace(job, name=f"change{i}-speed{j}-case{k}", n_waves=0)
-            found.append(Combination(changes=tuple(together), case=case, speed=speed, job=job))
+            jobs = plan_jobs(replace(there, duration=there.long_enough(acting)))
+            for n, one in enumerate(jobs):  # one for each road where people are random
+                name = f"change{i}-speed{j}-case{k}" + (f"-roads{n}" if n else "")
+                job = replace(one, name=name, n_waves=0)
+                found.append(Combination(changes=tuple(together), case=case, speed=speed, job=job))
     return tuple(found)
 
 

@@ -2,39 +2,19 @@
 
 from __future__ import annotations
 
-import zlib
-
 import numpy as np
 
 from trundle._progress import Progress
 from trundle.criteria import watched
 from trundle.results.parts import DayPart
+from trundle.run.departures import departures_of
 from trundle.run.jobs import Job, PreparedJob
 from trundle.signals import mid_band_frequencies
-from trundle.simulate import Coverage, Source, coverage_of
-from trundle.simulate.sources.passage import Passage
+from trundle.simulate import Coverage, coverage_of
 from trundle.traffic import Day, Departures, Loudest, Meeting, meeting_error, on_one_day
 from trundle.traffic.tally import Tally
 
 __all__ = ["day_part"]
-
-_FOLLOWS = 2.0  # s, that drivers keep from the one ahead at least
-
-
-def departures_of(job: Job) -> Departures:
-    """Return who departs when: of a random stream, as the study's seed has it."""
-    assert job.schedule is not None  # else it is no day
-    key = (zlib.crc32(f"schedule {job.schedule.name}".encode()),)
-    rng = np.random.default_rng(np.random.SeedSequence(job.seed, spawn_key=key))
-    return job.schedule.draw(rng, {s.name: _behind(s) for s in job.sources})
-
-
-def _behind(source: Source) -> float:
-    """Return how long behind a vehicle the next one follows at least [s]: its length, and 2 s."""
-    if not isinstance(source, Passage):
-        return 0.0
-    law = source.crossing.route.law
-    return float(law.time_to(source.crossing.vehicle.length)) + _FOLLOWS
 
 
 def day_part(job: Job, laid_out: PreparedJob, *, progress: Progress | None = None) -> DayPart:
@@ -49,9 +29,9 @@ def day_part(job: Job, laid_out: PreparedJob, *, progress: Progress | None = Non
     progress : callable, optional
         Told the share done.
     """
-    departures = departures_of(job)
-    assert laid_out.floor is not None  # laid out for a day
-    error = meeting_error(laid_out.floor, laid_out.alone, departures, job.points, seed=job.seed)
+    assert job.schedule is not None  # else it is no day
+    departures = departures_of(job.schedule, job.sources, job.seed)
+    error = meeting_error(laid_out.alone, departures, laid_out.meeting, seed=job.seed)
     coverage = _coverage(laid_out)
     layout = laid_out.layout
     curves, complete = watched(

@@ -13,6 +13,7 @@ from trundle.response import (
     SpectrumQuantity,
 )
 from trundle.road import FeaturedRoad, Road
+from trundle.run.departures import departures_of
 from trundle.signals import Averaging, Isolation
 from trundle.simulate import (
     Layout,
@@ -28,7 +29,7 @@ from trundle.structure import Spot
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Study
 from trundle.study.plans import Case, MethodPlan
-from trundle.traffic import Schedule
+from trundle.traffic import Schedule, lay_out_meeting
 
 __all__ = ["Job", "PreparedJob", "plan_jobs", "prepare_job"]
 
@@ -223,14 +224,14 @@ class PreparedJob:
         What leads to the places of a map.
     alone : mapping of str to Layout
         Of a day, one passage on each route.
-    floor : PreparedFloor or None
-        Of a day, the floor that two who meet are run together on.
+    meeting : Layout or None
+        Of a day, the two vehicles that meet closest, at once.
     """
 
     layout: Layout
     places: PlaceResponses | None
     alone: Mapping[str, Layout] = field(default_factory=dict[str, Layout])
-    floor: PreparedFloor | None = None
+    meeting: Layout | None = None
 
 
 def _watched(study: Study, method: MethodPlan) -> tuple[Criterion, ...]:
@@ -262,8 +263,13 @@ def prepare_job(job: Job, floor: PreparedFloor) -> PreparedJob:
             )
             for source in job.sources
         }
-        first = next(iter(alone.values()))
-        return PreparedJob(layout=first, places=None, alone=alone, floor=floor)
+        departures = departures_of(job.schedule, job.sources, job.seed)
+        return PreparedJob(
+            layout=next(iter(alone.values())),
+            places=None,
+            alone=alone,
+            meeting=lay_out_meeting(floor, alone, departures, job.points),
+        )
     layout = lay_out(
         floor,
         job.sources,

@@ -82,6 +82,7 @@ def _coarse(study: Study, method: str) -> Study:
         roads={road: study.roads[road]},
         methods=tuple(m for m in study.methods if m.name == method),
         map=None,
+        schedules={},
         printed=(),
         printed_bounds=(),
     )

@@ -69,6 +69,7 @@ def on_two_meshes(study: Study) -> tuple[Study, Study]:
         roads={label: study.roads[label]},
         methods=tuple(m for m in study.methods if m.name == name),
         map=None,
+        schedules={},
         printed=(),
         printed_bounds=(),
     )

@@ -2,7 +2,7 @@
 
 from trundle.traffic.day import Day, Loudest, Meeting
 from trundle.traffic.expected import Expected, OnePassage, expected_day
-from trundle.traffic.meeting import closest_meeting, meeting_error
+from trundle.traffic.meeting import closest_meeting, lay_out_meeting, meeting_error
 from trundle.traffic.superpose import on_one_day
 from trundle.traffic.timetable import DAY, Departures, Poisson, Schedule, Stream, Times, evenly
 
@@ -21,6 +21,7 @@ __all__ = [
     "closest_meeting",
     "evenly",
     "expected_day",
+    "lay_out_meeting",
     "meeting_error",
     "on_one_day",
 ]

@@ -9,13 +9,13 @@ from itertools import pairwise
 import numpy as np
 
 from trundle._typing import Array
-from trundle.simulate import Layout, PreparedFloor, Source, batches, ensemble
+from trundle.simulate import Layout, PreparedFloor, Source, batches, lay_out
 from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import Passage
 from trundle.structure import Spot
 from trundle.traffic.timetable import Departures
 
-__all__ = ["closest_meeting", "meeting_error"]
+__all__ = ["closest_meeting", "lay_out_meeting", "meeting_error"]
 
 
 def closest_meeting(
@@ -49,15 +49,13 @@ def closest_meeting(
     return found
 
 
-def meeting_error(
+def lay_out_meeting(
     floor: PreparedFloor,
     layouts: Mapping[str, Layout],
     departures: Departures,
     points: Mapping[str, Spot],
-    *,
-    seed: int,
-) -> float:
-    """Return by how much the closest meeting differs if both are run together.
+) -> Layout | None:
+    """Lay out the closest meeting of a day, both vehicles at once.
 
     Parameters
     ----------
@@ -69,6 +67,36 @@ def meeting_error(
         Who departs when.
     points : mapping of str to Spot
         Where the response is read.
+
+    Returns
+    -------
+    Layout or None
+        None where nobody meets, or vehicles do not feel the floor.
+    """
+    met = closest_meeting(layouts, departures)
+    if met is None or not layouts[met[0]].method.moves:
+        return None
+    first, second, gap = met
+    method = layouts[first].method
+    dt = method.integration.dt
+    both = (layouts[first].sources[0], _later(layouts[second].sources[0], round(gap / dt) * dt))
+    length = both[0].leaves + TAIL
+    return lay_out(floor, both, method=method, points=points, duration=length)
+
+
+def meeting_error(
+    layouts: Mapping[str, Layout], departures: Departures, meeting: Layout | None, *, seed: int
+) -> float:
+    """Return by how much the closest meeting differs if both are run together.
+
+    Parameters
+    ----------
+    layouts : mapping of str to Layout
+        One passage on each route.
+    departures : Departures
+        Who departs when.
+    meeting : Layout or None
+        Both at once, from `lay_out_meeting`.
     seed : int
         Seed of all roads.
 
@@ -81,22 +109,11 @@ def meeting_error(
     met = closest_meeting(layouts, departures)
     if met is None:
         return np.nan
-    first, second, gap = met
-    method = layouts[first].method
-    if not method.moves:
+    if meeting is None:
         return 0.0
-    dt = method.integration.dt
-    late = round(gap / dt)
-    both = (layouts[first].sources[0], _later(layouts[second].sources[0], late * dt))
-    together = ensemble(
-        floor,
-        both,
-        method=method,
-        points=points,
-        n_runs=1,
-        seed=seed,
-        duration=both[0].leaves + TAIL,
-    ).velocity[0]
+    first, second, gap = met
+    late = round(gap / meeting.integration.dt)
+    together = _velocity(meeting, seed)
     alone = {name: _velocity(layouts[name], seed) for name in dict.fromkeys((first, second))}
     n = len(together)
     other = np.concatenate([np.zeros((late, together.shape[1])), alone[second]])[:n]
@@ -106,7 +123,7 @@ def meeting_error(
 
 
 def _velocity(layout: Layout, seed: int) -> Array:
-    """Return what the first run of a route alone gives at the points."""
+    """Return what the first run of a layout gives at the points."""
     return next(batches(layout, runs=range(1), seed=seed)).velocity[0]
 
 

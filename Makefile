@@ -71,6 +71,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/estimate.py
 	$(BIN)/python benchmarks/building.py
+	$(BIN)/python benchmarks/day.py
 
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs

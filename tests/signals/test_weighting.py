@@ -5,6 +5,7 @@ import pytest
 
 from trundle.signals import (
     crest_factor,
+    estimated_dose_value,
     mtvv,
     response_factor,
     vibration_dose_value,
@@ -58,3 +59,22 @@ def test_measures_of_a_steady_sine():
         2 * (0.375 * 20) ** 0.25, rel=1e-6
     )
     assert crest_factor(x) == pytest.approx(np.sqrt(2), rel=1e-6)
+
+
+def test_an_estimated_dose_is_the_dose_of_steady_motion_and_too_low_for_bursts():
+    """VDV over eVDV: 1.107 / 1.4 of a sine, 1.316 / 1.4 of Gaussian noise; above 1 of a burst.
+
+    The fourth moment of a sine of RMS 1 is 1.5, of a normal variable 3; of 100,000 samples the
+    latter's fourth root scatters by some 0.3 %. A burst that lasts a share p of the record has
+    ``p^(-1/4)`` times the ratio of what it is made of: twice, of a sixteenth.
+    """
+    fs, n = 100.0, 100_000
+    sine = np.sqrt(2.0) * np.sin(2 * np.pi * 7.0 * np.arange(n) / fs)
+    noise = np.random.default_rng(0).standard_normal(n)
+    burst = np.where(np.arange(n) < n // 16, sine, 0.0)
+    for samples, expected in (
+        (sine, 1.5**0.25 / 1.4), (noise, 3.0**0.25 / 1.4), (burst, 2.0 * 1.5**0.25 / 1.4),
+    ):  # fmt: skip
+        rms = np.sqrt(np.mean(samples**2))
+        ratio = vibration_dose_value(samples, fs) / estimated_dose_value(rms, n / fs)
+        assert ratio == pytest.approx(expected, rel=0.01)

@@ -12,13 +12,12 @@ from trundle._typing import Array
 from trundle.criteria import BY_FREQUENCY, Criterion
 from trundle.results.cells import Cell, CellKey, DayKey
 from trundle.results.study_result import StudyResult
-from trundle.signals import TOP_FREQUENCY
+from trundle.signals import TOP_FREQUENCY, estimated_dose_value
 from trundle.traffic import Day, Expected, OnePassage, Schedule, expected_day
 
 __all__ = ["DayDoses", "DayRow", "day_doses", "day_rows"]
 
 _DAY = slice(7, 23)  # hours of BS 6472-1's day
-_EVDV = 1.4  # times the RMS and the fourth root of time: the dose of Gaussian motion
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -207,7 +206,7 @@ def _doses(
         number = np.array([by_day, float(counts[route].sum()) - by_day])
         numbers, length = cell.reduced.numbers, float(cell.history.time[-1])
         vdv += number * np.mean(numbers["vdv"][:, point] ** 4)
-        estimate = _EVDV * numbers["weighted_rms"][:, point] * length**0.25
+        estimate = estimated_dose_value(numbers["weighted_rms"][:, point], length)
         evdv += number * np.mean(estimate**4)
     day, night = (vdv**0.25).tolist()
     return (day, night), tuple((evdv**0.25).tolist())  # pyright: ignore[reportReturnType]

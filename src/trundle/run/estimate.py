@@ -173,7 +173,8 @@ def _memory_of(job: Job) -> float:
     before, record = run_in_steps(job), job.duration / dt
     contacts = sum(len(source.contact_names) for source in job.sources)
     points, roads = len(job.points), len(job.factors)
-    columns = 1 + max((len(part) for part in job.parts), default=job.n_waves)
+    at_once = 64 * len(job.sources) if job.schedule is not None else job.n_waves
+    columns = 1 + max((len(part) for part in job.parts), default=at_once)
     a_run = 8.0 * ((before + record) * contacts + record * (3 * points + contacts))
     held = _AT_ONCE * max(min(_BATCH, columns * a_run), 17 * a_run)
     rows = 8.0 * record * contacts * 24 * 4  # the contact operator of every step

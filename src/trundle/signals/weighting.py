@@ -10,8 +10,8 @@ import numpy as np
 from jaxtyping import Complex, Float
 from scipy import fft
 
-from trundle._checks import one_of
-from trundle._typing import Array
+from trundle._checks import one_of, positive
+from trundle._typing import Array, ArrayLike
 from trundle.signals.levels import running_rms
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "BASE_SIDEWAYS",
     "Weighting",
     "crest_factor",
+    "estimated_dose_value",
     "mtvv",
     "response_factor",
     "vibration_dose_value",
@@ -62,6 +63,7 @@ _TABLE: Mapping[str, _Parameters] = {
     "Wd": _Parameters(f1=0.4, f2=100.0, f3=2.0, f4=2.0, q4=0.63),
     "Wm": _Parameters(f1=10.0**-0.1, f2=100.0, f3=5.684, f4=5.684, q4=0.5),
 }
+_EVDV = 1.4
 _Q = 1.0 / np.sqrt(2.0)  # of the two band-limiting filters
 
 
@@ -150,6 +152,28 @@ def vibration_dose_value(
         How many such events the dose is for (BS 6472-1): it grows with their fourth root.
     """
     return np.asarray((events * np.sum(weighted**4, axis=-1) / sampling_frequency) ** 0.25)
+
+
+def estimated_dose_value(weighted_rms: ArrayLike, duration: float) -> Float[Array, ...]:
+    """Return the dose that an RMS value lets expect: ``1.4 a_rms T^0.25`` [m/s^1.75].
+
+    Parameters
+    ----------
+    weighted_rms : array_like of float
+        RMS of weighted acceleration over the time [m/s2].
+    duration : float
+        That time [s].
+
+    Notes
+    -----
+    Meant for motion whose crest factor is below 6. The dose of Gaussian motion is 3^(1/4) = 1.316
+    in place of 1.4, that of a sine 1.107; of a short burst in a long record it is larger.
+
+    References
+    ----------
+    BS 6841:1987, Annex A; BS 6472-1:2008.
+    """
+    return np.asarray(_EVDV * np.asarray(weighted_rms, float) * positive("T", duration) ** 0.25)
 
 
 def crest_factor(samples: Float[Array, "... steps"]) -> Float[Array, ...]:

@@ -13,6 +13,7 @@ import trundle as tr
 from trundle.results.cells import CellKey, DayKey
 from trundle.results.expected_days import day_doses, day_rows
 from trundle.results.together import together_rows
+from trundle.views.verdicts import headline
 
 FOLDER = Path(__file__).parents[2] / "examples"
 
@@ -163,3 +164,16 @@ def test_a_machine_alone_passes_nothing_that_it_does_not_excite():
     both = result.cells[CellKey("all at once", "laid floor", "coupled")].coverage
     assert both.by == "road"
     assert both.excited_to > 24.2
+
+
+@pytest.mark.slow
+def test_the_verdict_says_who_governs():
+    """Beside the verdict of all together stands the source with most of the energy; alone nothing."""
+    result = corridor()
+    rows = {(row.point, row.verdict.criterion.name): row.governs for row in together_rows(result)}
+    for line in headline(result):
+        if line["case"] != "all at once":
+            assert line["governs"] == ""
+            continue
+        name = (line["first"] or line["best"]).criterion.name
+        assert line["governs"].startswith(f"governed by {rows[line['point'], name]}, ")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,7 @@ from trundle.criteria import Verdict
 from trundle.results.cells import CellKey
 from trundle.results.maps import MapKey
 from trundle.results.study_result import StudyResult, positions_at, wheels_at
+from trundle.results.together import Together, together_rows
 from trundle.views.words import roughest_words
 
 __all__ = ["headline", "strictest_passed", "verdict_matrix"]
@@ -19,6 +20,10 @@ __all__ = ["headline", "strictest_passed", "verdict_matrix"]
 def headline(result: StudyResult) -> list[dict[str, Any]]:
     """State for each case and road the strictest velocity criterion that is met."""
     lines: list[dict[str, Any]] = []
+    meetings = {
+        (row.case, row.road, row.point, row.verdict.criterion.name): row
+        for row in together_rows(result)
+    }
     for key, verdicts in result.verdicts.items():
         for point in result.study.points:
             bands = [
@@ -37,12 +42,25 @@ def headline(result: StudyResult) -> list[dict[str, Any]]:
                     "best": best,
                     "first": first,
                     "where": _where(result, key, first or best),
+                    "governs": _governs(meetings, key, first or best),
                     "worst": _worst_place(result, key, first or best),
                     "road_passed": roughest_words(result.study, key.road, best) if best else "",
                     "reasons": _reasons(verdicts, point),
                 }
             )
     return lines
+
+
+def _governs(
+    meetings: Mapping[tuple[str, str, str, str], Together], key: CellKey, verdict: Verdict | None
+) -> str:
+    """Say which of several sources governs; nothing where one acts alone."""
+    if verdict is None:
+        return ""
+    row = meetings.get((key.case, key.road, verdict.point, verdict.criterion.name))
+    if row is None or not row.governs:
+        return ""
+    return f"governed by {row.governs}, {100.0 * row.shares[row.governs]:.0f} % of the energy"
 
 
 def strictest_passed(verdicts: Sequence[Verdict]) -> Verdict | None:

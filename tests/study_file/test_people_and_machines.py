@@ -7,6 +7,7 @@ from studies import GOOD
 from trundle.errors import StudyError
 from trundle.machine import Harmonics, RunUp, Strokes, Unbalance
 from trundle.simulate.sources.walker import StandsAt
+from trundle.study.doubts import study_doubts
 from trundle.study_file.build import study_from_text
 from trundle.study_file.timetables import read_timetable, seconds_of
 from trundle.traffic import Poisson, Times
@@ -238,6 +239,25 @@ def test_departures_make_several_passages_of_one_route():
     assert second.crossing.depart == 4.0
     apart = study_from_text(text.replace('departures = ["0 s", "4 s"]', 'headway = "4 s"'))
     assert apart.cases[-1].departs == (0.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "told_of"),
+    [
+        (SCHEDULE.replace('headway = "10 min"', 'headway = "1 s"'), "schedule day"),
+        (
+            '[[traffic]]\nname = "t"\nroutes = ["main", "main"]\ndepartures = ["0 s", "1 s"]\n',
+            "traffic t",
+        ),
+    ],
+)  # fmt: skip
+def test_two_vehicles_at_one_place_are_doubted(text, told_of):
+    """A truck of some 12.5 m at 15 km/h needs 3 s for its length; a second behind is inside it."""
+    found = [w for w in study_doubts(study_from_text(GOOD + text)) if w.subject == told_of]
+    assert len(found) == 1
+    assert "at one place" in found[0].message
+    calm = study_from_text(GOOD + text.replace('"1 s"', '"20 s"'))
+    assert not [w for w in study_doubts(calm) if w.subject == told_of]
 
 
 def test_what_stands_on_a_plane_of_symmetry_is_told():

@@ -44,6 +44,9 @@ def check(path: Path, *, as_json: bool = False) -> None:
         + ("known by its modes" if mass is None else f"{mass / 1e3:.0f} t moving vertically")
     )
     print(f"work:  {cells} cells of {study.runs} runs, records of up to {study.longest_record:g} s")
+    if study.schedules:
+        days = (f"{name} of {one.per_day:.4g} passages" for name, one in study.schedules.items())
+        print(f"days:  {'; '.join(days)}")
     estimate = estimate_of(study)
     print(f"takes: {estimate}")
     if dear := what_is_dear(estimate):

@@ -22,6 +22,7 @@ from trundle.structure import (
 )
 from trundle.structure.building import Building, in_the_way
 from trundle.study.doubts_mesh import gap_doubts, shape_doubts
+from trundle.study.doubts_traffic import traffic_doubts
 from trundle.study.doubts_values import value_doubts
 from trundle.study.model import Study
 from trundle.study.plans import MethodPlan
@@ -46,6 +47,7 @@ def study_doubts(study: Study) -> tuple[FitnessWarning, ...]:
         *(() if study.plan is None else _of_plan(study, study.plan)),
         *(() if study.building is None else _of_building(study, study.building)),
         *value_doubts(study),
+        *traffic_doubts(study),
         *study.told,
     )
 

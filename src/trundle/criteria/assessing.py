@@ -173,8 +173,12 @@ def _by_band(
     limits = criterion.limit(spectra.mid_band)
     asked = np.isfinite(limits)
     excited = coverage.excites(spectra.mid_band)
-    usable = asked & spectra.resolved & excited
     values = spectra.values[:, point]
+    known = spectra.resolved
+    level = np.full(len(limits), np.nan)
+    level[known] = np.percentile(values[:, known], percentile, axis=0)
+    # what lies above a limit does so whoever else might excite the band
+    usable = asked & known & (excited | (np.nan_to_num(level) > np.where(asked, limits, np.inf)))
     missing = _missing(spectra, criterion, asked)
     unexcited = _named(spectra, spectra.mid_band[asked & spectra.resolved & ~excited])
     _refuse_non_finite(values[:, usable], criterion, name)
@@ -183,9 +187,6 @@ def _by_band(
         *coverage.reasons(waves=bool(unexcited)),
         *_still(values[:, usable]),
     )
-    level = np.full(len(limits), np.nan)
-    known = spectra.resolved
-    level[known] = np.percentile(values[:, known], percentile, axis=0)
     shown = Verdict(
         criterion=criterion,
         point=name,
@@ -197,7 +198,7 @@ def _by_band(
         averaging=spectra.averaging,
         bands=_outcomes(spectra, level, np.where(asked, limits, np.nan), usable),
     )
-    if not usable.any():
+    if not usable.any() or _still(values[:, usable]):
         return shown
     margins = limits[usable] / np.maximum(level[usable], np.finfo(float).tiny)
     worst = int(np.flatnonzero(usable)[margins.argmin()])

@@ -38,6 +38,11 @@ class MachineForce(Protocol):
         """Frequency that a time step must show, or it would look slower [Hz]."""
         ...
 
+    @property
+    def sudden(self) -> bool:
+        """Whether it comes on by itself, and not smoothly."""
+        ...
+
     def at(self, time: Float[Array, " times"], phase: float) -> Float[Array, " times"]:
         """Return the force at some times [N], with the phase of a run in turns, 0 to 1."""
         ...
@@ -56,6 +61,8 @@ class Harmonics:
     frequencies: Float[Array, " n"]
     amplitudes: Float[Array, " n"]
     phases: Float[Array, " n"]
+
+    sudden = False
 
     def __post_init__(self) -> None:
         """Check and freeze all three."""
@@ -96,6 +103,8 @@ class Unbalance:
 
     mass_radius: float
     frequency: float
+
+    sudden = False
 
     def __post_init__(self) -> None:
         """Check both."""
@@ -165,6 +174,8 @@ class RunUp:
     mass_radius: float = 0.0
     amplitude: float = 0.0
 
+    sudden = False
+
     def __post_init__(self) -> None:
         """Check that it is one of the two."""
         set_frozen(
@@ -223,6 +234,8 @@ class Strokes:
     every: float = np.inf
     first: float = 0.0
 
+    sudden = True
+
     def __post_init__(self) -> None:
         """Check times; blows may not overlap."""
         set_frozen(
@@ -243,8 +256,8 @@ class Strokes:
 
     @property
     def shows(self) -> float:
-        """Nothing: of a blow shorter than a step what the step can show is left."""
-        return 0.0
+        """How fast blows follow each other; of a short one what a step can show is left."""
+        return 0.0 if np.isinf(self.every) else 0.8 / self.every
 
     def at(self, time: Float[Array, " times"], phase: float) -> Float[Array, " times"]:
         """Return what steps show of the force; the phase puts off all blows by part of a period.

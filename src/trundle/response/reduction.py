@@ -166,6 +166,7 @@ def reduce_on_scaled_roads(
     *,
     averaging: Averaging = "max_1s",
     quantities: Iterable[SpectrumQuantity] = (),
+    horizontal: Sequence[int] = (),
     curves: Sequence[CurveLimit] = (),
 ) -> list[RunLevels]:
     """Reduce some runs as they are on roads of other roughness.
@@ -182,6 +183,8 @@ def reduce_on_scaled_roads(
         Averaging rule of the band levels.
     quantities : iterable of SpectrumQuantity
         Spectra wanted beside that of velocity.
+    horizontal : sequence of int
+        Points that move sideways, see `reduce_runs`.
     curves : sequence of CurveLimit
         What is watched: for how long levels lie above.
 
@@ -195,7 +198,13 @@ def reduce_on_scaled_roads(
         some = runs.part(slice(start, start + _TOGETHER))
         for kept, factor in zip(found, factors, strict=True):
             rougher = some.on_scaled_road(mean, factor)
-            levels = reduce_runs(rougher, averaging=averaging, quantities=quantities, curves=curves)
+            levels = reduce_runs(
+                rougher,
+                averaging=averaging,
+                quantities=quantities,
+                horizontal=horizontal,
+                curves=curves,
+            )
             kept.append(levels)
     return [join(parts) for parts in found]
 

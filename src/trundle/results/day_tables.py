@@ -63,8 +63,9 @@ def _loudest(row: DayRow) -> dict[str, Any]:
         "present": []
         if found is None
         else [
-            f"{one.route} departed {one.departed:.1f} s, front axle at "
-            f"({one.x:.2f}, {one.y:.2f}) m, {one.rms_velocity:.3g} m/s"
+            f"{one.route} departed {one.departed:.1f} s, "
+            + ("leaving" if np.isnan(one.x) else f"at ({one.x:.2f}, {one.y:.2f}) m")
+            + f", {one.rms_velocity:.3g} m/s"
             for one in found.present
         ],
     }

@@ -110,7 +110,8 @@ def day_rows(result: StudyResult) -> Iterator[DayRow]:
     Yields
     ------
     DayRow
-        By schedule, road, point and criterion.
+        By schedule, road, point and criterion; limits on motion in another direction than a
+        point's are left out.
     """
     assessment = result.study.assessment
     if assessment is None:
@@ -118,8 +119,11 @@ def day_rows(result: StudyResult) -> Iterator[DayRow]:
     for name, schedule in result.study.schedules.items():
         for road in result.study.roads:
             cells = _cells(result, schedule, road)
-            for i, point in enumerate(result.study.points):
+            ways = result.study.point_ways or ("vertical",) * len(result.study.points)
+            for i, (point, way) in enumerate(zip(result.study.points, ways, strict=True)):
                 for criterion in assessment.criteria:
+                    if criterion.axis not in {way, "each axis"} or criterion.quantity == "vdv":
+                        continue  # doses of days are held by `day_doses`
                     found = [_passage(cell, criterion, i) for cell in cells.values()]
                     yield DayRow(
                         key=DayKey(name, road),
@@ -153,8 +157,12 @@ def _passage(cell: Cell, criterion: Criterion, point: int) -> tuple[OnePassage, 
         limits = criterion.limit(spectra.mid_band)
         asked = np.isfinite(limits)
         known = asked & spectra.resolved & reach.excites(spectra.mid_band)
-        whole = not (asked & ~known).any() and not len(criterion.bands_beyond())
+        lines = criterion.quantity == "narrow_band_acceleration"
+        beyond = not lines and len(criterion.bands_beyond()) > 0
+        whole = not (asked & ~known).any() and not beyond
         exceeds = (spectra.values[:, point, known] > limits[known]).any(axis=1)
+        if spectra.averaging != "max_1s":  # a day is read by the running level of 1 s
+            exceeds = seconds > 0.0
     else:
         top = float(min(criterion.frequencies[-1], TOP_FREQUENCY)) * (1 - 1e-6)
         whole = min(cell.f_resolved, reach.excited_to) >= top

@@ -32,14 +32,13 @@ def day_part(job: Job, laid_out: PreparedJob, *, progress: Progress | None = Non
     assert job.schedule is not None  # else it is no day
     departures = departures_of(job.schedule, job.sources, job.seed)
     error = meeting_error(laid_out.alone, departures, laid_out.meeting, seed=job.seed)
-    coverage = _coverage(laid_out)
-    layout = laid_out.layout
-    curves, complete = watched(
-        job.watched,
-        f_max=layout.f_max,
-        sampling_frequency=1.0 / layout.integration.dt,
-        coverage=coverage,
-    )
+    layout, reaches = laid_out.layout, _reaches(laid_out)
+    read = {"f_max": layout.f_max, "sampling_frequency": 1.0 / layout.integration.dt}
+    # bands are read as far as anybody excites them; all is known only as far as everybody does
+    widest = max(reaches, key=lambda one: one.excited_to)
+    curves, _ = watched(job.watched, coverage=widest, **read)
+    each = [watched(job.watched, coverage=one, **read)[1] for one in reaches]
+    complete = tuple(all(flags) for flags in zip(*each, strict=True))
     days = []
     for i, factor in enumerate(job.factors.values()):
 
@@ -50,16 +49,15 @@ def day_part(job: Job, laid_out: PreparedJob, *, progress: Progress | None = Non
 
         tally = on_one_day(
             laid_out.alone, departures, curves, seed=job.seed, factor=factor,
-            isolations=job.isolations, progress=tell,
+            isolations=job.isolations, sideways=job.sideways, progress=tell,
         )  # fmt: skip
         days.append(_day(job, departures, tally, complete, error))
     return DayPart(days=tuple(days))
 
 
-def _coverage(laid_out: PreparedJob) -> Coverage:
-    """Return how far the passages of a day reach: the least of all routes."""
-    each = [coverage_of(one.sources, float(one.time[-1])) for one in laid_out.alone.values()]
-    return min(each, key=lambda one: (one.left, one.excited_to))
+def _reaches(laid_out: PreparedJob) -> list[Coverage]:
+    """Return how far one passage on each route of a day reaches."""
+    return [coverage_of(one.sources, float(one.time[-1])) for one in laid_out.alone.values()]
 
 
 def _day(

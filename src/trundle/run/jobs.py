@@ -101,6 +101,11 @@ class Job:
     schedule: Schedule | None = None
 
     @property
+    def sideways(self) -> tuple[int, ...]:
+        """Which points read level motion."""
+        return tuple(i for i, spot in enumerate(self.points.values()) if spot.axis != "z")
+
+    @property
     def modal(self) -> bool:
         """Whether the floor is stepped in its modes."""
         return self.method.interaction.integration.f_max is not None

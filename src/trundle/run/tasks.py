@@ -92,6 +92,7 @@ class RunsTask:
             factors,
             averaging=job.averaging,
             quantities=job.quantities,
+            horizontal=job.sideways,
             curves=curves,
         )
         one = runs.part(slice(0, 1))

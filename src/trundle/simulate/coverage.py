@@ -47,8 +47,11 @@ class Coverage:
         return self.ends >= self.leaves * (1.0 - 1e-9)
 
     def excites(self, mid_band: Float[Array, " bands"]) -> Bool[Array, " bands"]:
-        """Return which bands the roads excite as a whole."""
-        return band_edges(np.asarray(mid_band, float))[:, 1] * _WHOLE <= self.excited_to
+        """Return which bands the roads excite as a whole, or which hold a line of given forces."""
+        edges = band_edges(np.asarray(mid_band, float))
+        if self.by == "forces":
+            return edges[:, 0] <= self.excited_to
+        return edges[:, 1] * _WHOLE <= self.excited_to
 
     def reasons(self, *, waves: bool) -> tuple[str, ...]:
         """Say what is missing and what would help.

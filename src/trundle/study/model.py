@@ -20,7 +20,7 @@ from trundle.signals import Isolation
 from trundle.simulate import Crossing
 from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import Passage
-from trundle.simulate.sources.source import Source
+from trundle.simulate.sources.source import Source, put_off
 from trundle.structure import FloorPlan, Spot, Structure, build_floor
 from trundle.structure.building import Building, Meshing, build_building
 from trundle.study.map_plan import MapPlan
@@ -242,7 +242,7 @@ class Study:
         for name, depart in zip(case.routes, case.departs, strict=True):
             before[name] += 1
             if name in self.sources:
-                found.append(self.sources[name])
+                found.append(put_off(self.sources[name], depart))
                 continue
             crossing = self._crossing(self.drives[name], road, method, depart)
             found.append(Passage(crossing=crossing, number=before[name]))

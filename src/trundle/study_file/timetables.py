@@ -101,9 +101,8 @@ def read_timetable(path: Path) -> dict[str, list[float]]:
     names = [cell.strip().lower() for cell in head.split(delimiter)]
     time, route = _column(names, _HEADINGS, path), _column(names, _ROUTES, path)
     out: dict[str, list[float]] = {}
-    for (number, _), row in zip(
-        lines[1:], csv.reader([one for _, one in lines[1:]], delimiter=delimiter), strict=False
-    ):
+    for number, line in lines[1:]:
+        row = _cells(line, delimiter, f"{path.name}, line {number}")
         if len(row) != len(names):
             raise InputError(
                 f"{path.name}, line {number}: {len(row)} cells under {len(names)} headings"
@@ -116,6 +115,14 @@ def read_timetable(path: Path) -> dict[str, list[float]]:
     if not out:
         raise InputError(f"{path.name}: holds no departure below its heading")
     return out
+
+
+def _cells(line: str, delimiter: str, place: str) -> list[str]:
+    """Return the cells of a line; a quote that is not closed is a mistake."""
+    try:
+        return next(csv.reader([line], delimiter=delimiter, strict=True))
+    except csv.Error as error:
+        raise InputError(f"{place}: is no row of a table ({error})") from None
 
 
 def _text_of(path: Path) -> str:

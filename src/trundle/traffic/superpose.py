@@ -44,6 +44,7 @@ def on_one_day(
     seed: int,
     factor: float = 1.0,
     isolations: Mapping[str, Isolation] | None = None,
+    sideways: Sequence[int] = (),
     progress: Progress | None = None,
 ) -> Tally:
     """Run a day, and tell what lay above which limit, when.
@@ -62,6 +63,8 @@ def on_one_day(
         How many times rougher the road is than that of the layouts.
     isolations : mapping of str to Isolation, optional
         What stands between floor and tool at some of the points.
+    sideways : sequence of int
+        Points that read level motion, which people feel otherwise.
     progress : callable, optional
         Told the share of passages done.
     """
@@ -71,7 +74,7 @@ def on_one_day(
         raise InputError("passages of a day need one time step")
     tally = Tally(curves, first.point_names, fs)
     meter = Meter(curves, mid_band_frequencies(), fs)
-    passages = _Passages(layouts, departures, seed, (factor, isolations or {}))
+    passages = _Passages(layouts, departures, seed, (factor, isolations or {}, sideways))
     for start, stop in passages.busy(round(_RINGS * fs)):
         meter.rest()
         for at in range(start, stop, _PART):
@@ -106,7 +109,7 @@ class _Passages:
         layouts: Mapping[str, Layout],
         departures: Departures,
         seed: int,
-        to: tuple[float, Mapping[str, Isolation]],
+        to: tuple[float, Mapping[str, Isolation], Sequence[int]],
     ) -> None:
         self._layouts = layouts
         self._fs = 1.0 / next(iter(layouts.values())).integration.dt
@@ -116,7 +119,7 @@ class _Passages:
         self._length = lengths[departures.which]
         counts = departures.counts()
         self._coming = {
-            name: _runs_of(layouts[name], counts[name], seed, *to) for name in departures.route
+            name: _runs_of(layouts[name], counts[name], seed, to) for name in departures.route
         }
         self._next, self._there = 0, list[_Passage]()
 
@@ -168,19 +171,23 @@ class _Passages:
 
 
 def _runs_of(
-    layout: Layout, n_runs: int, seed: int, factor: float, isolations: Mapping[str, Isolation]
+    layout: Layout,
+    n_runs: int,
+    seed: int,
+    to: tuple[float, Mapping[str, Isolation], Sequence[int]],
 ) -> Iterator[dict[str, Float[Array, "points steps"]]]:
     """Give the motion of one run after the other, some run at once."""
+    factor, isolations, sideways = to
     mean: MeanResponse | None = None
     if factor != 1.0 and any(source.random for source in layout.sources):
         mean = runs_with_mean(layout, runs=range(1), seed=seed)[1]
     size = min(_TOGETHER, batch_size(layout))
     for runs in batches(layout, runs=range(n_runs), seed=seed, batch=size):
         some = runs if mean is None else runs.on_scaled_road(mean, factor)
-        yield from _motions(behind_isolators(some, isolations))
+        yield from _motions(behind_isolators(some, isolations), list(sideways))
 
 
-def _motions(runs: Runs) -> Iterator[dict[str, Float[Array, "points steps"]]]:
+def _motions(runs: Runs, sideways: list[int]) -> Iterator[dict[str, Float[Array, "points steps"]]]:
     """Give the motion of each of some runs, faded out at its end: a sudden one would be a blow."""
     fs = runs.sampling_frequency
     n_fade = min(round(_FADE * fs), len(runs.time))
@@ -190,6 +197,8 @@ def _motions(runs: Runs) -> Iterator[dict[str, Float[Array, "points steps"]]]:
         for name in ("displacement", "velocity", "acceleration")
     }
     moved["felt"] = weight(moved["acceleration"], fs, "Wb")
+    if sideways:
+        moved["felt"][:, sideways] = weight(moved["acceleration"][:, sideways], fs, "Wd")
     for values in moved.values():
         values[..., -n_fade:] *= fade
     for i in range(runs.n_runs):

@@ -120,7 +120,7 @@ def _passages(result: StudyResult, key: DayKey, day: Day | None) -> str:
         return said
     return (
         f"{said}; on the day that was run {day.n_passages}, up to {day.at_once} at once, somebody "
-        f"there or the floor ringing for {day.busy / 60.0:.3g} min"
+        f"there or the floor ringing for {_n(day.busy / 60.0)} min"
     )
 
 
@@ -142,7 +142,7 @@ def _line(row: DayRow) -> DayLine:
     minutes = "no running level"
     if np.isfinite(expected.minutes):
         minutes = least + _between(expected.minutes, expected.minutes_interval)
-    run = "" if np.isnan(row.events_run) else f"{row.events_run:.0f}, {row.minutes_run:.2g} min"
+    run = "" if np.isnan(row.events_run) else f"{row.events_run:.0f}, {_n(row.minutes_run)} min"
     return DayLine(
         point=row.point,
         criterion=row.criterion.title,

@@ -55,6 +55,8 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
             caption="Motion over each axle on rigid ground, largest set to 1.",
             draw=lambda one=vehicle: vehicle_modes_figure(one),
         )
+        if not vehicle.is_linear:
+            continue  # its forces by exact steps would be another's
         yield Drawing(
             name=f"axle_forces{end}",
             title=f"Dynamic axle forces: {name}",

@@ -169,7 +169,7 @@ class MachineInputs:
 
 def _running(clock: Array, machine: Machine) -> Float[Array, " times"]:
     """Return a factor that is 1 while a machine runs: a steady one comes on and goes smoothly."""
-    if machine.force.shows == 0.0:  # blows come on by themselves
+    if machine.force.sudden:
         return ((clock >= 0.0) & (clock <= machine.lasts)).astype(float)
     over = min(_COMES_ON, 0.5 * machine.lasts)
     nearest = np.clip(np.minimum(clock, machine.lasts - clock) / over, 0.0, 1.0)

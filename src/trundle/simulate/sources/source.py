@@ -16,12 +16,12 @@ from jaxtyping import Complex, Float
 
 from trundle._typing import Array
 from trundle.dynamics import Modes
-from trundle.errors import FitnessWarning
+from trundle.errors import FitnessWarning, InputError
 from trundle.route import Along, Track
 from trundle.structure import ContactShape, Structure
 from trundle.vehicle import Vehicle
 
-__all__ = ["Inputs", "KnownForces", "Source", "WaveSet"]
+__all__ = ["Inputs", "KnownForces", "Source", "WaveSet", "put_off"]
 
 
 @runtime_checkable
@@ -190,6 +190,22 @@ class Source(Protocol):
     ) -> tuple[FitnessWarning, ...]:
         """Return what a result must say of it on a structure."""
         ...
+
+
+def put_off(source: Source, by: float) -> Source:
+    """Return a source that begins later [s].
+
+    Raises
+    ------
+    InputError
+        One that says nothing of when it begins.
+    """
+    if by == 0.0:
+        return source
+    for key in ("depart", "starts"):
+        if hasattr(source, key):
+            return replace(source, **{key: getattr(source, key) + by})  # pyright: ignore
+    raise InputError(f"{source.name!r} does not say when it begins, and cannot begin later")
 
 
 class KnownForces:

@@ -29,7 +29,7 @@ class ScheduleSection(Section):
 
     name: GroupName
     route: Name | None = None
-    mix: dict[Name, Annotated[Number, Field(gt=0.0)]] | None = None
+    mix: Annotated[dict[Name, Annotated[Number, Field(gt=0.0)]] | None, Field(min_length=1)] = None
     times: Annotated[tuple[TimeOfDay, ...] | None, Field(min_length=1)] = None
     headway: Time | None = None
     per_hour: Annotated[_Count, Field(gt=0.0)] | None = None

@@ -57,6 +57,7 @@ def test_mistakes_as_json_come_with_place_and_line(tmp_path):
     ]
 
 
+@pytest.mark.longest
 def test_a_run_as_json_and_in_silence(tmp_path):
     code, out, err = trundle("run", STUDY, "-o", "one", "--json", cwd=tmp_path)
     assert code == 0, err

@@ -47,7 +47,13 @@ def ran(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SMALL)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.longest] * (name in {"car_park", "flat_slab"}))
+        for name in SMALL
+    ],
+)
 def test_an_example_runs_to_its_report(tmp_path, name):
     """Every case is felt at every point, and the report has a plan of every storey."""
     result = ran(name)

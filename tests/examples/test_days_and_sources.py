@@ -130,7 +130,7 @@ def test_doses_of_a_day_are_estimated_by_their_rms():
     assert night.vdv_night == pytest.approx(3**0.25 * one)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_sources_of_a_laboratory_are_held_beside_each_other(tmp_path):
     """Energies of all sources bound those of each; who governs has the smallest margin of all.
 
@@ -154,7 +154,7 @@ def test_sources_of_a_laboratory_are_held_beside_each_other(tmp_path):
     assert "Largest:" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_machine_alone_passes_nothing_that_it_does_not_excite():
     """The pump's force ends at 24 Hz: its own verdicts say so; the corridor's go to the top."""
     result = corridor()
@@ -166,7 +166,7 @@ def test_a_machine_alone_passes_nothing_that_it_does_not_excite():
     assert both.excited_to > 24.2
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_the_verdict_says_who_governs():
     """Beside the verdict of all together stands the source with most of the energy; alone nothing."""
     result = corridor()

@@ -80,7 +80,7 @@ def test_a_survey_is_driven_over_beside_its_class(tmp_path):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_semitrailer_cuts_the_corner_and_stops_at_the_dock():
     """Its trailer runs up to 2.5 m inside of the path, and all axles stand on the deck at last.
 

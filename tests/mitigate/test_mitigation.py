@@ -277,6 +277,7 @@ step = "4 mm"
 """
 
 
+@pytest.mark.longest
 def test_joints_stay_when_road_classes_are_compared(tmp_path):
     """On the study's own class and speed a joint is felt as in the study itself: the same level."""
     text = TEXT.replace(LIBRARY, LIBRARY + '\ncontact_patch = "0.2 m"') + JOINT

@@ -115,7 +115,7 @@ def test_a_grid_over_no_surface_is_whole():
     assert grid.xy[1].tolist() == [1.0, 0.0]
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_maps_of_two_storeys_are_those_of_each(study, tmp_path):
     """Levels at a map's place are those of a point there; off the slab there is none."""
     result = tr.run_study(study)

@@ -44,6 +44,16 @@ def test_energies_of_two_machines_are_three_four_five(result):
     assert (row.governs, row.band) == ("pump", pytest.approx(10**0.9))
 
 
+def test_the_band_of_a_machines_own_line_is_held_against_limits(result):
+    """The fan's 8 Hz lie far above VC-A: it fails there, whatever bands it does not excite."""
+    verdicts = result.verdicts[CellKey("fan", "no road", "coupled")]
+    (vc,) = [v for v in verdicts if v.criterion.name == "VC-A"]
+    levels = result.cells[CellKey("fan", "no road", "coupled")].spectra.values[:, 0, 9]
+    assert vc.governing_band == pytest.approx(10**0.9)
+    assert vc.value == pytest.approx(np.percentile(levels, vc.percentile))
+    assert vc.status == ("fail" if vc.value > 50e-6 else "not assessed")
+
+
 def test_together_they_lie_between_their_difference_and_their_sum(result):
     """Phases are random: over the runs levels of both reach from 1 to 7 tenths of 10 N, not beyond."""
     cells = {n: result.cells[CellKey(n, "no road", "coupled")] for n in ("fan", "pump", "both")}

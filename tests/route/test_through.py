@@ -212,7 +212,7 @@ method = "coupled"
 """
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_study_drives_up_a_ramp_to_its_report(tmp_path):
     """First the yard is shaken, then the upper deck; the report shows the way on all three."""
     import trundle as tr

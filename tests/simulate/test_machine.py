@@ -8,7 +8,7 @@ from models import simple_beam, small_floor
 from trundle.dynamics import ModalRatio
 from trundle.errors import InputError
 from trundle.machine import Harmonics, RunUp, Strokes, Unbalance
-from trundle.signals import Isolator
+from trundle.signals import Isolator, mid_band_frequencies
 from trundle.simulate import Coupled, Decoupled, Modal, coverage_of, ensemble
 from trundle.simulate.sources.machine import Machine
 
@@ -196,6 +196,9 @@ def test_what_a_machine_excites_bounds_nobody_elses_reach():
     reach = coverage_of([fan], 20.0)
     assert (reach.excited_to, reach.by) == (25.0, "forces")
     assert "forces that are given end at 25 Hz" in reach.reasons(waves=True)[0]
+    # the band that holds its line is excited, those wholly above are not
+    bands = mid_band_frequencies()
+    assert bands[reach.excites(bands)].max() == pytest.approx(10**1.4)
 
 
 def test_what_cannot_be_is_refused():

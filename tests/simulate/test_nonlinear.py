@@ -85,6 +85,7 @@ def test_a_wheel_that_is_thrown_up_lifts_off_and_lands():
 
 
 @pytest.mark.parametrize("slip", [2e3, 8e3])
+@pytest.mark.longest
 def test_leaves_that_rub_follow_jenkins_element(slip):
     """Rate form: the force changes by -k v while it sticks, and stays at the slip force."""
     stiffness = 3e6
@@ -137,6 +138,7 @@ def test_laws_that_never_act_change_nothing(kind):
     assert any("not linear" in one.message for one in runs[1].warnings)
 
 
+@pytest.mark.longest
 def test_on_a_stiff_floor_a_coupled_vehicle_lifts_off_as_on_the_ground():
     """A floor of a thousand times the stiffness and mass: the forces of rigid ground."""
     vehicle = quarter(lifts_off=True).build()

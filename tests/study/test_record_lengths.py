@@ -1,6 +1,7 @@
 """Cases whose vehicles leave at different times have records of different lengths."""
 
 import numpy as np
+import pytest
 import xarray as xr
 
 from studies import GOOD
@@ -22,6 +23,7 @@ routes = ["main", "slow"]
 """
 
 
+@pytest.mark.longest
 def test_shorter_records_are_stored_beside_longer_ones(tmp_path, monkeypatch):
     """Behind their ends stands no number, and before them every one that was computed."""
     monkeypatch.setenv("TRUNDLE_CACHE", "")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from studies import GOOD
-from trundle.errors import StudyError
+from trundle.errors import InputError, StudyError
 from trundle.machine import Harmonics, RunUp, Strokes, Unbalance
 from trundle.simulate.sources.walker import StandsAt
 from trundle.study.doubts import study_doubts
@@ -267,3 +267,37 @@ def test_what_stands_on_a_plane_of_symmetry_is_told():
     assert any("plane of symmetry" in one for one in told(half + text))
     assert study_from_text(half + MACHINE).sources
     assert study_from_text(half + WALKER.replace('"1 m"]', '"0 m"]')).sources  # ways are halved
+
+
+def test_people_and_machines_of_traffic_depart_when_they_are_told():
+    """Later than each begins by itself: 2 s more of a walker, 3 s more of a pump."""
+    text = WALKER + 'depart = "1 s"\n' + MACHINE
+    text += '[[traffic]]\nname = "t"\nroutes = ["main", "guard", "pump"]\n'
+    study = study_from_text(GOOD + text + 'departures = ["0 s", "2 s", "3 s"]\n')
+    _, guard, pump = study.acting(study.cases[-1], "B", study.methods[0])
+    assert (guard.depart, pump.starts) == (3.0, 3.0)
+    alone = study.acting(study.cases[1], "B", study.methods[0])[0]
+    assert {getattr(alone, "depart", 0.0), getattr(alone, "starts", 0.0)} <= {0.0, 1.0}
+
+
+@pytest.mark.parametrize(
+    "text", [WALKER + WALKER, MACHINE + MACHINE, WALKER + MACHINE.replace("pump", "guard")]
+)
+def test_names_of_sources_must_differ(text):
+    """None is dropped in silence."""
+    assert any("names must differ" in one for one in told(GOOD + text))
+
+
+def test_blows_that_no_step_tells_apart_are_refused():
+    """Every microsecond, by steps of 5 ms: told before memory is asked for."""
+    rotor = 'rotor = { speed = "1450 rpm", grade = "6.3 mm/s", mass = "200 kg" }'
+    blows = 'blows = { impulse = "3 N s", contact_time = "0.5 us", every = "1 us" }'
+    assert any("shorten dt" in one for one in told(GOOD + MACHINE.replace(rotor, blows)))
+
+
+@pytest.mark.parametrize("row", ["8:00," + 200_000 * "x", '8:00,"main', '8:00,"ma"in'])
+def test_rows_that_no_table_has_are_refused(tmp_path, row):
+    """A field without end, a quote that is not closed: with the line, and no traceback."""
+    (tmp_path / "t.csv").write_text(f"time,route\n{row}\n8:10,main\n")
+    with pytest.raises(InputError, match="line 2"):
+        read_timetable(tmp_path / "t.csv")

@@ -63,7 +63,7 @@ def test_the_reference_unit_part_by_part_is_the_reference_unit():
     np.testing.assert_allclose(f_unit, f_plan, rtol=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_triangles_carry_the_reference_unit_as_quadrilaterals_do():
     """At 1 m, within 1 % of where quadrilaterals of 1 m and 0.6 m lead (their error goes with h^2).
 

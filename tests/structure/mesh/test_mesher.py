@@ -272,6 +272,7 @@ def nearly_touching(draw):
 
 @settings(max_examples=80, deadline=None, derandomize=True)
 @given(drawn=nearly_touching())
+@pytest.mark.longest
 def test_lines_that_nearly_touch_leave_no_crack(drawn):
     """A line may end 2 mm from another, or run 1 mm off the edge: up to 2 mm are taken in or out."""
     lines, points, (w, d), h = drawn

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trundle.results.cells import DayKey
+from trundle.results.cells import CellKey, DayKey
 from trundle.results.expected_days import DayDoses, DayRow, day_doses, day_rows
 from trundle.results.study_result import StudyResult
 from trundle.results.together import Together, together_rows
@@ -15,6 +15,9 @@ from trundle.traffic import Day, Loudest
 from trundle.units import MICROMETRE_PER_SECOND
 
 __all__ = ["DayLine", "DayView", "TogetherLine", "clock", "day_views", "together_lines"]
+
+
+_OVERLAP = 0.3  # of an hour that passages fill, from which on many overlap
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,12 +119,29 @@ def _passages(result: StudyResult, key: DayKey, day: Day | None) -> str:
     schedule = result.study.schedules[key.schedule]
     each = ", ".join(f"{name} {n.sum():.4g}" for name, n in schedule.expected().items())
     said = f"{schedule.per_day:.4g} passages a day ({each})"
+    filled = _filled(result, key)
+    if filled > _OVERLAP:
+        said += (
+            f"; in the busiest hour they fill {100.0 * filled:.0f} % of it and overlap: what is "
+            "expected counts each, and the day that was run counts what is felt"
+        )
     if day is None:
         return said
     return (
         f"{said}; on the day that was run {day.n_passages}, up to {day.at_once} at once, somebody "
         f"there or the floor ringing for {_n(day.busy / 60.0)} min"
     )
+
+
+def _filled(result: StudyResult, key: DayKey) -> float:
+    """Return what part of the busiest hour passages fill, one after the other."""
+    assessment, schedule = result.study.assessment, result.study.schedules[key.schedule]
+    assert assessment is not None  # else there is no day
+    seconds = np.zeros(24)
+    for route, counts in schedule.expected().items():
+        cell = result.cells[CellKey(route, key.road, assessment.method)]
+        seconds += counts * float(cell.history.time[-1])
+    return float(seconds.max()) / 3600.0
 
 
 def _meeting(day: Day | None) -> str:

@@ -108,6 +108,15 @@ def test_turns_a_minute_are_turns():
         (WALKER.replace('["12 m", "1 m"]', '["13 m", "1 m"]'), "must stand on the floor"),
         (WALKER.replace('"2 Hz"', '"9 Hz"'), "pace must be in"),
         (WALKER.replace('"2 Hz"', '"2 m"'), "not one of frequency"),
+        (WALKER + 'mass = "80 t"\n', "people weigh"),
+        (WALKER + 'speed = "100 km/h"\n', "people walk at"),
+        (
+            MACHINE.replace(
+                'rotor = { speed = "1450 rpm", grade = "6.3 mm/s", mass = "200 kg" }',
+                'harmonics = [["10 Hz", "0 N"]]',
+            ),
+            "greater than 0",
+        ),
         (WALKER + "people = 0\n", "must be 1 or more"),
         (WALKER + 'on = "attic"\n', "no other surface"),
         (WALKER + 'pase = "2 Hz"\n', "did you mean 'pace'"),

@@ -37,6 +37,7 @@ from trundle.study_file.way_checks import standing_problems
 
 __all__ = ["MACHINE", "build", "problems"]
 
+_Amplitude = Annotated[Force, Field(gt=0.0)]
 _WAYS = ("rotor", "harmonics", "run_up", "blows")
 
 
@@ -113,7 +114,9 @@ class MachineSection(Section):
     feet: Annotated[tuple[Place, ...] | None, Field(min_length=1)] = None
     on: Name | None = None
     rotor: RotorSection | None = None
-    harmonics: Annotated[tuple[tuple[Frequency, Force], ...] | None, Field(min_length=1)] = None
+    harmonics: Annotated[tuple[tuple[Frequency, _Amplitude], ...] | None, Field(min_length=1)] = (
+        None
+    )
     run_up: RunUpSection | None = None
     blows: BlowsSection | None = None
     mounts: MountsSection | None = None

@@ -37,6 +37,7 @@ from trundle.study_file.way_checks import standing_problems, way_problems
 __all__ = ["WALKER", "build", "problems"]
 
 _GRAVITY = 9.81  # m/s2
+_MASSES, _SPEEDS = (10.0, 400.0), (0.1, 6.0)  # kg, m/s: beyond is a slip of the unit
 
 
 class WalkerSection(Section):
@@ -69,6 +70,10 @@ class WalkerSection(Section):
             rule = "speed and radius are of a path; who stays at a place has lasts"
         elif self.path is not None and self.lasts is not None:
             rule = "lasts is of a place; a path lasts as long as its length and speed say"
+        elif self.mass is not None and not _MASSES[0] <= self.mass <= _MASSES[1]:
+            rule = f"people weigh {_MASSES[0]:g} to {_MASSES[1]:g} kg; got {self.mass:g} kg"
+        elif self.speed is not None and not _SPEEDS[0] <= self.speed <= _SPEEDS[1]:
+            rule = f"people walk at {_SPEEDS[0]:g} to {_SPEEDS[1]:g} m/s; got {self.speed:.3g} m/s"
         if rule:
             raise PydanticCustomError("rule", "{rule}", {"rule": rule})
         return self

@@ -6,12 +6,22 @@ import numpy as np
 import pytest
 
 from models import small_floor
-from trundle.criteria import VC, assess, class_map, find_criterion
-from trundle.response import FloorMap
+from trundle.criteria import VC, assess, assess_reduced, class_map, find_criterion
+from trundle.machine import Unbalance
+from trundle.response import FloorMap, reduce_runs, velocity_spectra
 from trundle.road import RoadClass, RoughnessBand
 from trundle.route import DriveIn, Route
 from trundle.signals import mid_band_frequencies
-from trundle.simulate import Coupled, Coverage, Crossing, Modal, ModalRatio, ensemble
+from trundle.simulate import (
+    Coupled,
+    Coverage,
+    Crossing,
+    Modal,
+    ModalRatio,
+    coverage_of,
+    ensemble,
+)
+from trundle.simulate.sources.machine import Machine
 from trundle.units import KMH
 from trundle.vehicle import container_truck_40ft
 
@@ -90,6 +100,13 @@ def test_a_map_passes_no_class_without_waves():
     louder = replace(made, band_levels=np.where(BANDS > 40.0, 1e-3, made.band_levels))
     quiet = class_map(louder, VC, f_max=90.0, coverage=Coverage(excited_to=11.8))
     assert quiet.margin.min() > 1e3  # of bands that nothing excites no margin is made
+    some = Coverage(excited_to=11.8, partly_to=90.0)  # a truck's road ends, a pump goes on
+    failed = class_map(louder, VC, f_max=90.0, coverage=some)
+    assert failed.margin.max() < 1.0
+    assert failed.governing_band.min() > 40.0
+    hushed = class_map(made, VC, f_max=90.0, coverage=some)
+    assert not any(hushed.complete)
+    assert (hushed.governing_band < 11.8).all()  # what is not all of a band passes nothing
 
 
 def test_the_interval_of_a_margin_holds_it():
@@ -109,3 +126,33 @@ def test_the_interval_of_a_margin_holds_it():
     assert sure.uncertain
     assert "not surely" in str(sure)
     assert "vertical" in str(sure)
+
+
+def test_a_pump_beside_a_truck_whose_road_ends_can_fail_and_not_pass():
+    """Between the truck's last wave and the pump's line a level is a lower bound.
+
+    A 12 Hz rotor on the floor lies in the 12.5 Hz band, which the truck's waves do not reach:
+    alone it is assessed there; beside the truck it fails there if it does alone.
+    """
+    loud = Machine(
+        name="pump", feet=np.array([[8.0, 4.0]]),
+        force=Unbalance(mass_radius=1.0, frequency=12.0),
+    )  # fmt: skip
+    truck = runs(2.83)
+    alone, both = (coverage_of(some, 20.0) for some in ([loud], [crossing(2.83), loud]))
+    band = np.array([10**1.1])
+    assert alone.excites(band).all()
+    assert not both.excites(band).any()
+    assert both.excites_partly(band).all()
+    assert not truck.coverage.excites_partly(band).any()
+    at = int(np.abs(BANDS - band).argmin())
+    for level, status, governing in ((1e-3, "fail", band[0]), (1e-6, "not assessed", None)):
+        spectra = velocity_spectra(truck)
+        values = np.where(np.arange(20) == at, level, 1e-9) + 0.0 * spectra.values
+        reduced = replace(reduce_runs(truck), spectra=replace(spectra, values=values))
+        (verdict,) = assess_reduced(
+            reduced, find_criterion("VC-A"), percentile=50.0, f_resolved=80.0, coverage=both
+        )
+        assert verdict.status == status
+        if governing is not None:
+            assert verdict.governing_band == pytest.approx(governing)

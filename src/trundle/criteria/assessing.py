@@ -177,8 +177,9 @@ def _by_band(
     known = spectra.resolved
     level = np.full(len(limits), np.nan)
     level[known] = np.percentile(values[:, known], percentile, axis=0)
-    # what lies above a limit does so whoever else might excite the band
-    usable = asked & known & (excited | (np.nan_to_num(level) > np.where(asked, limits, np.inf)))
+    # where some of several sources excite, what they give is a lower bound: it can fail
+    louder = np.nan_to_num(level) > np.where(asked, limits, np.inf)
+    usable = asked & known & (excited | (louder & coverage.excites_partly(spectra.mid_band)))
     missing = _missing(spectra, criterion, asked)
     unexcited = _named(spectra, spectra.mid_band[asked & spectra.resolved & ~excited])
     _refuse_non_finite(values[:, usable], criterion, name)

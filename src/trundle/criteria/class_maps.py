@@ -187,14 +187,17 @@ def _by_band(
 ) -> tuple[Array, Array, Array, bool]:
     limits = criterion.limit(floor.mid_band)
     asked = np.isfinite(limits)
-    usable = asked & floor.resolved & coverage.excites(floor.mid_band)
+    excited = asked & floor.resolved & coverage.excites(floor.mid_band)
+    # where some of several sources excite, what they give is a lower bound: it can fail
+    usable = excited | (asked & floor.resolved & coverage.excites_partly(floor.mid_band))
     n_places = len(floor.places)
     beyond = len(criterion.bands_beyond()) > 0
-    complete = bool(usable.any() and not (asked & ~usable).any() and not beyond and coverage.left)
+    complete = bool(excited.any() and not (asked & ~excited).any() and not beyond and coverage.left)
     if not usable.any():
         nothing = np.full(n_places, np.nan)
         return nothing, nothing, nothing, False
     margins = limits[usable] / np.maximum(level[:, usable], np.finfo(float).tiny)
+    margins = np.where(excited[usable] | (margins < 1.0), margins, np.inf)
     levels = floor.band_levels[:, :, usable]
     above = (levels > limits[usable]).any(axis=2).mean(axis=0)
     moves = levels.max(axis=(0, 2)) > STILL

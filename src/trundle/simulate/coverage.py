@@ -34,12 +34,19 @@ class Coverage:
         Time at which the record ends [s].
     by : {"road", "forces"}
         What ends there: a road's waves, or forces that are known.
+    partly_to : float or None
+        Frequency to which any of several sources excites, the largest of all [Hz]; None where that
+        is `excited_to`. Between the two a level is a lower bound: it can fail, and not pass.
+    partly_by : {"road", "forces"}
+        What ends there.
     """
 
     excited_to: float = np.inf
     leaves: float = -np.inf
     ends: float = np.inf
     by: str = "road"
+    partly_to: float | None = None
+    partly_by: str = "road"
 
     @property
     def left(self) -> bool:
@@ -48,10 +55,13 @@ class Coverage:
 
     def excites(self, mid_band: Float[Array, " bands"]) -> Bool[Array, " bands"]:
         """Return which bands the roads excite as a whole, or which hold a line of given forces."""
-        edges = band_edges(np.asarray(mid_band, float))
-        if self.by == "forces":
-            return edges[:, 0] <= self.excited_to
-        return edges[:, 1] * _WHOLE <= self.excited_to
+        return _reached(mid_band, self.excited_to, self.by)
+
+    def excites_partly(self, mid_band: Float[Array, " bands"]) -> Bool[Array, " bands"]:
+        """Return which bands any of several sources excites: a level above a limit fails there."""
+        if self.partly_to is None:
+            return self.excites(mid_band)
+        return _reached(mid_band, self.partly_to, self.partly_by)
 
     def reasons(self, *, waves: bool) -> tuple[str, ...]:
         """Say what is missing and what would help.
@@ -95,12 +105,25 @@ def coverage_of(sources: Sequence[Crossing | Source], ends: float) -> Coverage:
     """
     many = as_sources(sources)
     # a force that is known altogether bounds nobody else's reach
-    bounding = [source for source in many if not source.complete]
-    reach = [source.excited_to(ends) for source in bounding or many]
-    chosen = int(np.argmin(reach) if bounding else np.argmax(reach))
+    bounding = [i for i, source in enumerate(many) if not source.complete]
+    reach = [source.excited_to(ends) for source in many]
+    most = int(np.argmax(reach))
+    least = min(bounding, key=lambda i: reach[i]) if bounding else most
     return Coverage(
-        excited_to=reach[chosen],
+        excited_to=reach[least],
         leaves=max(source.leaves for source in many),
         ends=ends,
-        by="forces" if (bounding or many)[chosen].oscillator is None else "road",
+        by=_what(many[least]),
+        partly_to=reach[most] if most != least else None,
+        partly_by=_what(many[most]),
     )
+
+
+def _what(source: Source) -> str:
+    return "forces" if source.oscillator is None else "road"
+
+
+def _reached(mid_band: Float[Array, " bands"], top: float, by: str) -> Bool[Array, " bands"]:
+    """Return which bands a road's waves fill, or which hold a line of given forces."""
+    edges = band_edges(np.asarray(mid_band, float))
+    return edges[:, 0] <= top if by == "forces" else edges[:, 1] * _WHOLE <= top

@@ -20,7 +20,7 @@ from trundle.signals import Isolation
 from trundle.simulate import Crossing
 from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import Passage
-from trundle.simulate.sources.source import Source, put_off
+from trundle.simulate.sources.source import Source
 from trundle.structure import FloorPlan, Spot, Structure, build_floor
 from trundle.structure.building import Building, Meshing, build_building
 from trundle.study.map_plan import MapPlan
@@ -241,14 +241,14 @@ class Study:
         found: list[Source] = []
         for name, depart in zip(case.routes, case.departs, strict=True):
             before[name] += 1
-            if name in self.sources:
-                found.append(put_off(self.sources[name], depart))
-                continue
-            crossing = self._crossing(self.drives[name], road, method, depart)
-            found.append(Passage(crossing=crossing, number=before[name]))
+            source = self.sources.get(name)
+            if source is None:
+                crossing = self._crossing(self.drives[name], road, method)
+                source = Passage(crossing=crossing, number=before[name])
+            found.append(source.later(depart))
         return tuple(found)
 
-    def _crossing(self, drive: Drive, road: str, method: MethodPlan, depart: float) -> Crossing:
+    def _crossing(self, drive: Drive, road: str, method: MethodPlan) -> Crossing:
         return Crossing(
             vehicle=drive.vehicle,
             route=drive.route,
@@ -256,7 +256,6 @@ class Study:
             band=self.band_for(drive, method),
             entry=method.entry,
             run_in=drive.run_in,
-            depart=depart,
         )
 
     def at_speed(self, speed: float) -> Study:

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from trundle._typing import Array
-from trundle.simulate import Layout, PreparedFloor, Source, batches, lay_out
+from trundle.simulate import Layout, PreparedFloor, batches, lay_out
 from trundle.simulate.sources.crossing import TAIL
-from trundle.simulate.sources.passage import Passage
 from trundle.structure import Spot
 from trundle.traffic.timetable import Departures
 
@@ -37,7 +35,7 @@ def closest_meeting(
     """
     leaves = {name: max(s.leaves for s in one.sources) for name, one in layouts.items()}
     vehicles = {
-        name for name, one in layouts.items() if all(isinstance(s, Passage) for s in one.sources)
+        name for name, one in layouts.items() if all(s.oscillator is not None for s in one.sources)
     }
     found: tuple[str, str, float] | None = None
     names = [departures.route[i] for i in departures.which]
@@ -79,7 +77,7 @@ def lay_out_meeting(
     first, second, gap = met
     method = layouts[first].method
     dt = method.integration.dt
-    both = (layouts[first].sources[0], _later(layouts[second].sources[0], round(gap / dt) * dt))
+    both = (layouts[first].sources[0], layouts[second].sources[0].later(round(gap / dt) * dt))
     length = both[0].leaves + TAIL
     return lay_out(floor, both, method=method, points=points, duration=length)
 
@@ -125,13 +123,6 @@ def meeting_error(
 def _velocity(layout: Layout, seed: int) -> Array:
     """Return what the first run of a layout gives at the points."""
     return next(batches(layout, runs=range(1), seed=seed)).velocity[0]
-
-
-def _later(source: Source, by: float) -> Source:
-    """Return a passage that departs later [s]."""
-    assert isinstance(source, Passage)  # who is no vehicle meets nobody
-    crossing = source.crossing
-    return Passage(crossing=replace(crossing, depart=crossing.depart + by))
 
 
 def _rms(values: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -87,6 +87,10 @@ class Machine(KnownForces):
     def leaves(self) -> float:
         """When it has stopped [s]; of one that never does, when it has settled."""
         return self.starts + (self.lasts if np.isfinite(self.lasts) else _SETTLES)
+
+    def later(self, by: float) -> Machine:
+        """Return the same machine, started later [s]."""
+        return replace(self, starts=self.starts + by)
 
     def track(self, time: Float[Array, " times"], begins: float) -> Track:
         """Return where its feet stand: always there."""

@@ -108,6 +108,10 @@ class Passage:
         """Return when it begins to move, a whole number of steps [s]."""
         return self.crossing.begins(dt)
 
+    def later(self, by: float) -> Passage:
+        """Return a passage that departs later [s], over the same road."""
+        return replace(self, crossing=replace(self.crossing, depart=self.crossing.depart + by))
+
     def track(self, time: Float[Array, " times"], begins: float) -> Track:
         """Return where its wheels are."""
         crossing = self.crossing

@@ -21,7 +21,7 @@ from trundle.route import Along, Track
 from trundle.structure import ContactShape, Structure
 from trundle.vehicle import Vehicle
 
-__all__ = ["Inputs", "KnownForces", "Source", "WaveSet", "put_off"]
+__all__ = ["Inputs", "KnownForces", "Source", "WaveSet"]
 
 
 @runtime_checkable
@@ -150,6 +150,10 @@ class Source(Protocol):
         """Return when it begins to move [s], whole steps before or after time 0."""
         ...
 
+    def later(self, by: float) -> Source:
+        """Return the same, put off by some time [s]."""
+        ...
+
     def track(self, time: Float[Array, " times"], begins: float) -> Track:
         """Return where its contacts are at some times [s]; before it begins it stands still."""
         ...
@@ -192,22 +196,6 @@ class Source(Protocol):
         ...
 
 
-def put_off(source: Source, by: float) -> Source:
-    """Return a source that begins later [s].
-
-    Raises
-    ------
-    InputError
-        One that says nothing of when it begins.
-    """
-    if by == 0.0:
-        return source
-    for key in ("depart", "starts"):
-        if hasattr(source, key):
-            return replace(source, **{key: getattr(source, key) + by})  # pyright: ignore
-    raise InputError(f"{source.name!r} does not say when it begins, and cannot begin later")
-
-
 class KnownForces:
     """What holds for every source whose forces are known, for such a source to inherit.
 
@@ -227,6 +215,12 @@ class KnownForces:
         """Return 0: it acts from the record's start."""
         del dt
         return 0.0
+
+    def later(self: Source, by: float) -> Source:
+        """Refuse: it says nothing of when it begins."""
+        if by == 0.0:
+            return self
+        raise InputError(f"{self.name!r} does not say when it begins, and cannot begin later")
 
     def waves(
         self, time: Float[Array, " times"], begins: float, n_waves: int

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -175,6 +175,10 @@ class Walker(KnownForces):
         if self.people == 1:
             return ("feet",)
         return tuple(f"feet {i + 1}" for i in range(self.people))
+
+    def later(self, by: float) -> Walker:
+        """Return the same people, put off by some time [s]."""
+        return replace(self, depart=self.depart + by)
 
     def _clocks(self, time: Float[Array, " times"]) -> Float[Array, "times people"]:
         """Return how long each has walked at some times [s]; negative before."""

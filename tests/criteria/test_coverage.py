@@ -104,9 +104,14 @@ def test_a_map_passes_no_class_without_waves():
     failed = class_map(louder, VC, f_max=90.0, coverage=some)
     assert failed.margin.max() < 1.0
     assert failed.governing_band.min() > 40.0
-    hushed = class_map(made, VC, f_max=90.0, coverage=some)
+    faint = replace(made, band_levels=np.where(BANDS > 40.0, 1e-8, made.band_levels))
+    hushed = class_map(faint, VC, f_max=90.0, coverage=some)
     assert not any(hushed.complete)
     assert (hushed.governing_band < 11.8).all()  # what is not all of a band passes nothing
+    none = class_map(faint, VC, f_max=90.0, coverage=Coverage(excited_to=0.5, partly_to=90.0))
+    assert np.isnan(none.margin).all()
+    assert np.isnan(none.governing_band).all()
+    assert set(none.classes()) == {-2}
 
 
 def test_the_interval_of_a_margin_holds_it():

@@ -201,9 +201,11 @@ def _by_band(
     levels = floor.band_levels[:, :, usable]
     above = (levels > limits[usable]).any(axis=2).mean(axis=0)
     moves = levels.max(axis=(0, 2)) > STILL
+    worst = margins.min(axis=1)
+    said = moves & np.isfinite(worst)  # not where no band is whole and none fails
     return (
-        np.where(moves, margins.min(axis=1), np.nan),
-        np.where(moves, floor.mid_band[usable][margins.argmin(axis=1)], np.nan),
+        np.where(said, worst, np.nan),
+        np.where(said, floor.mid_band[usable][margins.argmin(axis=1)], np.nan),
         np.where(moves, above, np.nan),
         complete,
     )

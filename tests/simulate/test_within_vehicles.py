@@ -216,6 +216,43 @@ def test_a_vehicle_driving_backwards_is_its_mirror_image():
     np.testing.assert_allclose(found[0][:, ::-1], expected[0], rtol=1e-8)
 
 
+def test_braking_backwards_loads_the_axle_that_leads():
+    """The mirror image of a van that brakes forwards; m a h / wheelbase goes to the leading axle."""
+    law = SpeedOverTime(time=np.array([0.0, 2.0, 8.0]), value=np.array([4.0, 4.0, 1.0]))
+    ahead = Route(points=np.array([[0.0, 0.0], [40.0, 0.0]]), law=law)
+    back = replace(ahead, reverse=True)
+    turned = replace(
+        van(),
+        bodies=(Body(mass=2000.0, pitch_inertia=2500.0, centre=1.8, height=0.9),),
+    )
+    time, found, _ = forces_of(van().build(), back)
+    _, expected, _ = forces_of(turned.build(), ahead)
+    np.testing.assert_allclose(found[0][:, 1::-1], expected[0][:, :2], rtol=1e-8)
+    settled = (time > 5.0) & (time < 7.5)
+    moved = found[0][settled, 1] - 2000.0 * GRAVITY * 1.2 / 3.0
+    np.testing.assert_allclose(moved, 2000.0 * 0.5 * 0.9 / 3.0, rtol=1e-3)
+
+
+def test_a_passage_put_off_is_the_same_passage():
+    """In reverse, braking, with an engine: the same vehicle to the bit, its forces a second later."""
+    law = SpeedOverTime(time=np.array([0.0, 2.0, 4.0]), value=np.array([3.0, 3.0, 2.0]))
+    ahead = Route.straight((0, 0), (12, 0), speed=3.0)
+    route = Route(points=ahead.points, law=law, reverse=True)
+    shaken = van(
+        forces=(BodyForce(name="engine", amplitude=300.0, frequency=20.0, body=0),)
+    ).build()
+    first = Passage(crossing=Crossing(shaken, route, SMOOTH, run_in=0.0))
+    late = first.later(0.5).later(0.5)
+    assert late.contact_names == first.contact_names
+    for name in ("contact_map", "setback", "static_forces"):
+        found, expected = (getattr(one.oscillator, name) for one in (late, first))
+        np.testing.assert_array_equal(found, expected)
+    time = np.linspace(0.0, 6.0, 201)
+    now, then = first.track(time, 0.0), late.track(time + 1.0, 1.0)
+    np.testing.assert_allclose(then.place, now.place, atol=1e-12)
+    assert late.crossing.driven.inner == first.crossing.driven.inner == 2
+
+
 def test_wheels_are_as_fast_as_their_places_move():
     """Round a bend, pulled and on the path: |dx/dt| of every wheel, by differences."""
     law = SpeedOverTime(time=np.array([0.0, 2.0, 6.0]), value=np.array([2.0, 2.0, 1.0]))

@@ -38,4 +38,4 @@ def _behind(source: Source) -> float:
     if not isinstance(source, Passage):
         return 0.0
     law = source.crossing.route.law
-    return float(law.time_to(source.crossing.vehicle.length)) + _FOLLOWS
+    return float(law.time_to(source.crossing.driven.length)) + _FOLLOWS

@@ -80,7 +80,7 @@ def _missing(crossing: Crossing, dt: float) -> tuple[str, str, str] | None:
     first = max(float(track.station[0]) for track in base.tracks) + half
     last = min(float(track.station[-1]) for track in base.tracks) - half
     begins = crossing.begins(dt)
-    start, vehicle = crossing.chainage, crossing.vehicle.length
+    start, vehicle = crossing.chainage, crossing.driven.length
     low = float(crossing.along(np.array([begins]), begins).station.min()) + start
     high = start + crossing.route.length + max(0.0, -crossing.lead) + vehicle
     gaps = []

@@ -188,17 +188,17 @@ def _aside(
 ) -> Iterator[Problem]:
     """Give the first wheel that stands on no slab while the middle of its route does."""
     if (
-        not np.any(crossing.vehicle.lateral)
+        not np.any(crossing.driven.lateral)
         and not crossing.route.lane
         and not crossing.route.radius
     ):
         return
-    way = crossing.route.length + crossing.vehicle.length
+    way = crossing.route.length + crossing.driven.length
     front = np.linspace(0.0, way, max(3, int(way / _LOOKED_AT)))
     wheels = wheel_places(crossing.route, crossing.footprint, front)
     station = front[:, None] - crossing.footprint.setback
     on = (station >= 0.0) & (station <= crossing.route.length)
-    for contact, name in enumerate(crossing.vehicle.contact_names):
+    for contact, name in enumerate(crossing.driven.contact_names):
         at = wheels.place[on[:, contact], contact]
         if surface is not None:
             off = at[~surface.holds(at)]
@@ -225,7 +225,7 @@ def _aside_through(model: Structure, place: str, crossing: Crossing) -> Iterator
         off = np.flatnonzero(at)[~model.surface(part.on).holds(part.place[at])]
         if len(off):
             x, y = track.place.reshape(-1, 2)[off[0]]
-            name = crossing.vehicle.contact_names[off[0] % track.share.shape[1]]
+            name = crossing.driven.contact_names[off[0] % track.share.shape[1]]
             yield Problem(
                 place=f"{place}.path",
                 value=f"{name} at ({x:.4g}, {y:.4g}) m",

@@ -176,6 +176,7 @@ class Vehicle:
             self,
             setback=self.setback.max() - self.setback,
             lateral=-self.lateral,
+            pitching=None if self.pitching is None else -self.pitching,
             units=(),
         )
 

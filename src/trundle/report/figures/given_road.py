@@ -74,7 +74,7 @@ def given_road_figure(study: Study, road: Road, drive: Drive) -> Figure:
 def _wheels(crossing: Crossing) -> dict[int, Profile]:
     """Return the first wheels of different tracks, each with what lies under it."""
     found: dict[float, int] = {}
-    vehicle = crossing.vehicle
+    vehicle = crossing.driven
     for contact in range(vehicle.n_contacts - vehicle.inner):
         found.setdefault(float(vehicle.lateral[contact]), contact)
     under: dict[int, Profile] = {}

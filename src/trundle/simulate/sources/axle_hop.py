@@ -31,7 +31,7 @@ def axle_hop_warnings(crossings: tuple[Crossing, ...]) -> tuple[FitnessWarning, 
         One for each vehicle in question; none for a vehicle with suspensions of its own, or
         whose highest natural frequency reaches 8 Hz.
     """
-    vehicles = {crossing.vehicle.name: crossing.vehicle for crossing in crossings}
+    vehicles = {crossing.driven.name: crossing.driven for crossing in crossings}
     return tuple(
         _cannot_hop(vehicle, float(vehicle.natural_frequencies()[-1]))
         for vehicle in vehicles.values()

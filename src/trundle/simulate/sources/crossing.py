@@ -33,7 +33,7 @@ class Crossing:
     Attributes
     ----------
     vehicle : Vehicle
-        The vehicle.
+        The vehicle, as it was given.
     route : Route
         Where it drives, and how fast.
     road : Road
@@ -59,6 +59,9 @@ class Crossing:
         road under its wheels, or level, as over a road of no height, so that the height of the
         road there hits it as a step; closed forms of the literature mostly begin so. Level needs
         an integration by `Modal`.
+    driven : Vehicle
+        The vehicle as its route has it: turned round where it drives backwards, with inner
+        contacts for all that acts within it. It follows from the others.
     """
 
     vehicle: Vehicle
@@ -71,6 +74,7 @@ class Crossing:
     depart: float = 0.0
     chainage: float = 0.0
     start: Literal["equilibrium", "level"] = "equilibrium"
+    driven: Vehicle = field(init=False)
 
     def __post_init__(self) -> None:
         """Check times and distances."""
@@ -87,13 +91,12 @@ class Crossing:
                 "chainage is the station of a given profile at the route's start; got "
                 f"{self.chainage:g} m with a random road, which has no stations: leave it out"
             )
-        if self.band.contact_patch == 0.0 and self.vehicle.contact_patch > 0.0:
-            patch = self.vehicle.contact_patch
-            set_frozen(self, band=replace(self.band, contact_patch=patch))
-        if self.route.reverse:
-            set_frozen(self, vehicle=self.vehicle.backwards())
+        set_frozen(self, driven=self.vehicle.backwards() if self.route.reverse else self.vehicle)
         braked = bool(np.any(self.route.law.change(self._clock()) != 0.0))
-        set_frozen(self, vehicle=self.vehicle.with_inner_contacts(braked=braked))
+        set_frozen(self, driven=self.driven.with_inner_contacts(braked=braked))
+        if self.band.contact_patch == 0.0 and self.driven.contact_patch > 0.0:
+            patch = self.driven.contact_patch
+            set_frozen(self, band=replace(self.band, contact_patch=patch))
         self._check_corners()
         self._check_rest()
         set_frozen(self, road=self.road.of(self.route.name))
@@ -125,9 +128,7 @@ class Crossing:
     def _check_corners(self) -> None:
         """Refuse wheels beside a line that turns sharply: they would jump."""
         bends = self.route.legs.curvature[:, None]
-        beside = (
-            np.array([self.vehicle.lateral.min(), self.vehicle.lateral.max()]) + self.route.lane
-        )
+        beside = np.array([self.driven.lateral.min(), self.driven.lateral.max()]) + self.route.lane
         if np.any(1.0 - bends * beside <= 0.0):
             raise InputError(
                 f"route {self.route.name!r}: corners of {self.route.radius:g} m are narrower than "
@@ -135,7 +136,7 @@ class Crossing:
             )
         if not self.route.has_sharp_corners:
             return
-        aside = float(np.abs(self.vehicle.lateral + self.route.lane).max())
+        aside = float(np.abs(self.driven.lateral + self.route.lane).max())
         if aside > 0.0:
             raise InputError(
                 f"route {self.route.name!r} turns sharply, where a wheel {aside:g} m beside its "
@@ -145,7 +146,7 @@ class Crossing:
     @property
     def footprint(self) -> Footprint:
         """Where its wheels are on the vehicle."""
-        vehicle = self.vehicle
+        vehicle = self.driven
         units = vehicle.units if self.route.steering == "tractrix" else ()
         return Footprint(setback=vehicle.setback, lateral=vehicle.lateral, units=units)
 
@@ -157,21 +158,21 @@ class Crossing:
     @property
     def _way(self) -> float:
         """What the front axle drives until the last wheel has left [m]."""
-        return self.route.length - self.lead + self.vehicle.length
+        return self.route.length - self.lead + self.driven.length
 
     def _check_contact(self) -> None:
         """Refuse a point that meets joints and steps: it would be thrown up in no time."""
         features = isinstance(self.road, FeaturedRoad) and self.road.features
-        if features and self.band.contact_patch == 0.0 and self.vehicle.wheel_radius == 0.0:
+        if features and self.band.contact_patch == 0.0 and self.driven.wheel_radius == 0.0:
             raise InputError(
-                f"vehicle {self.vehicle.name!r} meets joints or humps in a point, which no tyre "
+                f"vehicle {self.driven.name!r} meets joints or humps in a point, which no tyre "
                 "does: give the length of its contact patch (some 0.2 m of a truck's tyre, 0.1 m "
                 "of a forklift's solid one, 0.02 m of a polyurethane wheel)"
             )
 
     def tread(self, contact: int) -> Tread:
         """Return how one of its wheels meets what is shorter than itself."""
-        vehicle = self.vehicle
+        vehicle = self.driven
         stiffness, load = vehicle.contact_stiffness[contact], vehicle.static_forces[contact]
         sinking = float(load / stiffness) if stiffness > 0.0 else np.inf
         return Tread(sinking=max(sinking, 0.0), radius=vehicle.wheel_radius)
@@ -179,7 +180,7 @@ class Crossing:
     @property
     def lead(self) -> float:
         """Station of the front axle at the time of departure [m]."""
-        return self.entry.lead(self.vehicle.length)
+        return self.entry.lead(self.driven.length)
 
     @property
     def run_in_time(self) -> float:
@@ -189,7 +190,7 @@ class Crossing:
             return 0.0  # a standing start
         if self.run_in is not None:
             return self.run_in / speed
-        rates = self.vehicle.decay_rates()
+        rates = self.driven.decay_rates()
         return float(min(3.0 / max(rates.min(), 1e-9), _RUN_IN_LIMIT))
 
     @property
@@ -213,14 +214,14 @@ class Crossing:
         law, clock = self.route.law, np.maximum(time - self.depart, begins - self.depart)
         moving = time - begins > _ROUNDING
         front = self.lead + law.distance(clock)
-        station = front[:, None] - self.vehicle.setback
+        station = front[:, None] - self.driven.setback
         speed = np.broadcast_to((law.speed(clock) * moving)[:, None], station.shape)
         return Along(time=time, station=station, speed=speed)
 
     def wheels_on_floor(self, time: float) -> int:
         """Return how many of the wheels stand on the route at a time."""
         front = self.lead + float(self.route.law.distance(time - self.depart))
-        station = front - self.vehicle.setback
+        station = front - self.driven.setback
         return int(np.count_nonzero((station >= 0.0) & (station <= self.route.length)))
 
     def front_axle(self, time: float) -> tuple[float, float] | None:

@@ -92,7 +92,7 @@ def _track_doubts(
 def _tracks(crossing: Crossing) -> list[tuple[Profile, list[int]]]:
     """Return the profiles under a vehicle's wheels, each with the contacts that roll on it."""
     found: list[tuple[Profile, list[int]]] = []
-    for contact, aside in enumerate(crossing.vehicle.lateral[: _outer(crossing.vehicle)]):
+    for contact, aside in enumerate(crossing.driven.lateral[: _outer(crossing.driven)]):
         profile = crossing.road.under(float(aside), crossing.tread(contact))
         if profile is None:
             profile = Profile.smooth()
@@ -136,12 +136,12 @@ def given_road(crossing: Crossing, along: Along) -> GivenRoad:
         z, g = lying.road.at(lying.station)
         elevation[:, contacts] = z
         slope[:, contacts] = _over_kinks(lying.road, lying.station, g)
-        _put(came, contacts, crossing.vehicle, lying)
+        _put(came, contacts, crossing.driven, lying)
     if crossing.start == "level":
         return GivenRoad(elevation=elevation, slope=slope)
     level = came.here[0]
-    climbs = _follows_planes(crossing.vehicle)
-    grade = float(came.grade[: _outer(crossing.vehicle)].mean()) if climbs else 0.0
+    climbs = _follows_planes(crossing.driven)
+    grade = float(came.grade[: _outer(crossing.driven)].mean()) if climbs else 0.0
     way = along.station - along.station[0, 0]
     return GivenRoad(elevation=elevation - level - grade * way, slope=slope - grade)
 
@@ -180,7 +180,7 @@ def _lay(crossing: Crossing, given: Profile, along: Along) -> _Lying:
 def _needed(crossing: Crossing, station: Array) -> tuple[float, float]:
     """Return the stations from the first wheel's start to the last wheel's leaving [m]."""
     edge = crossing.chainage + crossing.route.length + max(0.0, -crossing.lead)
-    return float(station.min()), min(float(station.max()), edge + crossing.vehicle.length)
+    return float(station.min()), min(float(station.max()), edge + crossing.driven.length)
 
 
 def _check_cover(crossing: Crossing, profile: Profile, needed: tuple[float, float]) -> None:
@@ -212,7 +212,7 @@ def _remedy(crossing: Crossing, covered: tuple[float, float], reach: tuple[float
             f"{least:.2f} to {most:.2f} m, or lay the profile under the route with "
             f"Profile.moved({start - least:.2f}) or less, to {start - most:.2f}"
         )
-    shorter = way - crossing.vehicle.length
+    shorter = way - crossing.driven.length
     if start + behind <= last + _ROUNDING and shorter >= 0.0:
         # it is rounded up to whole time steps, for which a decimetre is kept
         return f"shorten the run-in to run_in={max(0.0, np.floor(10 * shorter - 1) / 10):g} m"

@@ -62,12 +62,12 @@ class Passage:
     @property
     def contact_names(self) -> tuple[str, ...]:
         """Name of every wheel."""
-        return self.crossing.vehicle.contact_names
+        return self.crossing.driven.contact_names
 
     @property
     def oscillator(self) -> Vehicle:
         """The vehicle."""
-        return self.crossing.vehicle
+        return self.crossing.driven
 
     @property
     def standing(self) -> bool:
@@ -119,17 +119,17 @@ class Passage:
         track = follow(
             crossing.route, crossing.entry, crossing.footprint, along, leaves=not crossing.stays
         )
-        if crossing.vehicle.inner:  # what acts within a vehicle touches no floor
-            track.share[:, -crossing.vehicle.inner :] = 0.0
-            track.share_slope[:, -crossing.vehicle.inner :] = 0.0
+        if crossing.driven.inner:  # what acts within a vehicle touches no floor
+            track.share[:, -crossing.driven.inner :] = 0.0
+            track.share_slope[:, -crossing.driven.inner :] = 0.0
         return track
 
     def swept(self) -> Track:
         """Return where its wheels are all along its way, each carried where it is on it."""
         crossing = self.crossing
-        way = crossing.route.length + crossing.vehicle.length
+        way = crossing.route.length + crossing.driven.length
         front = np.linspace(0.0, way, _PLACES_A_METRE * int(way) + 2)
-        station = front[:, None] - crossing.vehicle.setback
+        station = front[:, None] - crossing.driven.setback
         along = Along(time=front, station=station, speed=np.ones_like(station))
         track = follow(crossing.route, crossing.entry, crossing.footprint, along)
         on = (station >= 0.0) & (station <= crossing.route.length)
@@ -139,7 +139,7 @@ class Passage:
         """Give places all along each track of its wheels."""
         route, footprint = self.crossing.route, self.crossing.footprint
         if footprint.units:
-            way = route.length + self.crossing.vehicle.length
+            way = route.length + self.crossing.driven.length
             front = np.linspace(0.0, way, _PLACES_A_METRE * int(way) + 2)
             found = wheel_places(route, footprint, front)
             station = front[:, None] - footprint.setback
@@ -148,7 +148,7 @@ class Passage:
                 yield found.place[on, i], found.direction[on, i]
             return
         station = np.linspace(0.0, route.length, _PLACES_A_METRE * int(route.length) + 2)
-        for lateral in np.unique(self.crossing.vehicle.lateral):
+        for lateral in np.unique(self.crossing.driven.lateral):
             yield route.locate(station, lateral)
 
     def inputs(self, time: Float[Array, " times"], begins: float, seed: int) -> RoadInputs:
@@ -185,7 +185,7 @@ class Passage:
         speed = float(np.max(crossing.route.law.speed(clock)))
         if crossing.road.spectrum is not None:
             return speed * crossing.band.n_max
-        profile = crossing.road.under(float(crossing.vehicle.lateral[0]), crossing.tread(0))
+        profile = crossing.road.under(float(crossing.driven.lateral[0]), crossing.tread(0))
         apart = np.diff(np.zeros(0) if profile is None else profile.station)
         # samples hold no wave shorter than two; of a few points nobody knows what they hold
         return speed * 0.5 / float(apart[apart > 0.0].min(initial=np.inf))
@@ -235,8 +235,8 @@ class RoadInputs:
 
     def __init__(self, crossing: Crossing, along: Along, road: _Parts) -> None:
         self._road, self._level = road, crossing.start == "level"
-        self._stiffness = crossing.vehicle.contact_stiffness
-        self._rolling = crossing.vehicle.contact_damping * along.speed
+        self._stiffness = crossing.driven.contact_stiffness
+        self._rolling = crossing.driven.contact_damping * along.speed
         self._within = forces_within(crossing, along)
 
     def draw(self, run: int) -> tuple[Float[Array, "times contacts"], Float[Array, " contacts"]]:
@@ -256,7 +256,7 @@ class RoadInputs:
 
 
 def _not_linear(crossing: Crossing) -> list[FitnessWarning]:
-    vehicle = crossing.vehicle
+    vehicle = crossing.driven
     if vehicle.is_linear:
         return []
     what = ["lifts off"] * vehicle.lifts_off

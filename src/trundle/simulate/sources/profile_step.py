@@ -140,7 +140,7 @@ def _hidden(
     ]
     height, station, _ = max(pieces)
     steepness = max(steep for _, _, steep in pieces)
-    vehicle = crossing.vehicle
+    vehicle = crossing.driven
     stiffness = np.maximum(vehicle.contact_stiffness, 0.1 * vehicle.contact_damping / dt)
     force = stiffness * height + vehicle.contact_damping * speed * steepness
     static = np.abs(vehicle.static_forces)

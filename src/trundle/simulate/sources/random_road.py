@@ -29,7 +29,7 @@ class RandomRoad:
     def __init__(self, crossing: Crossing, road: Spectrum, along: Along, seed: int) -> None:
         self._crossing, self._road, self._seed = crossing, road, seed
         self._along = along
-        self._tracks, which = np.unique(crossing.vehicle.lateral, return_inverse=True)
+        self._tracks, which = np.unique(crossing.driven.lateral, return_inverse=True)
         self._under = [np.flatnonzero(which == i) for i in range(len(self._tracks))]
         self._extent = _road_extent(crossing)
         station, self._way = _turned_back(along.station, self._extent[1] - _TURNS)
@@ -84,7 +84,7 @@ def _road_extent(crossing: Crossing) -> tuple[float, float]:
     They do not depend on the time step, on the length of the record or on other vehicles, so that
     every method drives over the same road, and a vehicle over the same one alone and with others.
     """
-    reach = crossing.vehicle.length + _MARGIN
+    reach = crossing.driven.length + _MARGIN
     law = crossing.route.law
     before = float(law.speed(0.0)) * crossing.run_in_time - min(0.0, crossing.lead + _MARGIN)
     driven = crossing.exit_time - crossing.depart + TAIL

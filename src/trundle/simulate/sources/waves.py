@@ -106,7 +106,7 @@ def waves_under(
             f"route {crossing.route.name!r}: waves of {waves.n[-1]:g} cycle/m at {speed:.3g} m/s "
             f"need a time step of at most {dt / shortest:.3g} s"
         )
-    vehicle = crossing.vehicle
+    vehicle = crossing.driven
     tracks, which = np.unique(vehicle.lateral, return_inverse=True)
     mixing = _mixing(waves.n, np.abs(tracks[:, None] - tracks))
     for source in range(len(tracks)):
@@ -129,7 +129,7 @@ def _mixing(n: Array, distance: Array) -> Array:
 
 
 def _resonances(crossing: Crossing, speed: float) -> Array:
-    poles = crossing.vehicle.poles()
+    poles = crossing.driven.poles()
     frequency = np.abs(poles)
     keep = (np.imag(poles) > 0.0) & (frequency > 0.0)
     return np.column_stack(

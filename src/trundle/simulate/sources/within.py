@@ -23,7 +23,7 @@ def check_within(crossing: Crossing, dt: float) -> None:
     InputError
         A frequency above 0.4 of the steps a second.
     """
-    vehicle, speed = crossing.vehicle, crossing.route.law.fastest
+    vehicle, speed = crossing.driven, crossing.route.law.fastest
     turning = speed / (2.0 * np.pi)
     shaken = [(f"force {f.name!r}", f.frequency) for f in vehicle.forces if f.frequency]
     shaken += [
@@ -41,7 +41,7 @@ def check_within(crossing: Crossing, dt: float) -> None:
 
 def lifts_of_wheels(crossing: Crossing, along: Along) -> Float[Array, "2 times contacts"] | None:
     """Return by how much wheels that are not round lift [m], and its slope; None where all are."""
-    vehicle = crossing.vehicle
+    vehicle = crossing.driven
     if not vehicle.rounds:
         return None
     out = np.zeros((2, *along.station.shape))
@@ -58,7 +58,7 @@ def forces_within(crossing: Crossing, along: Along) -> Float[Array, "times inner
 
     An acceleration is told by its amount [m/s2]: the contact's row holds the masses and heights.
     """
-    vehicle = crossing.vehicle
+    vehicle = crossing.driven
     if not vehicle.inner:
         return np.zeros((len(along.time), 0))
     front = along.station[:, 0] + vehicle.setback[0]

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
-from scipy import sparse
 
 from trundle._checks import frozen_array, set_frozen
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, factorise, natural_modes
 from trundle.errors import InputError
+from trundle.structure.assembly import Form, assembled, blocks_of, without_noughts
 from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Damped, Elements
@@ -29,8 +29,6 @@ __all__ = ["DOF_NAMES", "Floor"]
 
 DOF_NAMES = ("ux", "uy", "uz", "rx", "ry", "rz")
 """The six degrees of freedom of a node, in the order of every matrix."""
-
-_ROUND_OFF = 1e-15  # against the roots of both diagonals; a coupling that counts is far above
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -239,51 +237,15 @@ class Floor:
             carried[link.leads] = True
         return carried
 
-    def _assemble(self, blocks: Callable[[Elements, Array], Array | None]) -> SparseMatrix:
-        rows, columns, values = [], [], []
+    def _assemble(self, form: Form) -> SparseMatrix:
+        blocks = blocks_of(self.elements, self.nodes, form)
         expansion = self.expansion
-        numbers, size = self.dof_index, self.n_dofs
-        if expansion is not None:  # of every dof first, then by those that move by themselves
-            numbers, size = np.arange(self.fixed.size).reshape(-1, 6), self.fixed.size
-        for group in self.elements:
-            matrices = blocks(group, self.nodes[group.connectivity])
-            if matrices is None:
-                continue
-            dofs = _element_dofs(numbers, group.connectivity)
-            row = np.broadcast_to(dofs[:, :, None], matrices.shape)
-            column = np.broadcast_to(dofs[:, None, :], matrices.shape)
-            keep = (row >= 0) & (column >= 0)
-            rows.append(row[keep])
-            columns.append(column[keep])
-            values.append(matrices[keep])
-        shape = (size, size)
-        entries = np.concatenate(values)
-        at = (np.concatenate(rows), np.concatenate(columns))
-        matrix = sparse.coo_array((entries, at), shape=shape).tocsc()
-        matrix.sum_duplicates()
-        if expansion is not None:
-            matrix = (expansion.T @ matrix @ expansion).tocsc()
-        return _without_noughts(matrix)
-
-
-def _element_dofs(numbers: Array, elements: Array) -> Array:
-    """Return the rows of elements' dofs, -1 at the ground and where there is none."""
-    dofs = np.where(elements[:, :, None] == GROUND, -1, numbers[elements])
-    return dofs.reshape(len(elements), -1)
-
-
-def _without_noughts(matrix: SparseMatrix) -> SparseMatrix:
-    """Return a matrix without entries that are nought but for the round-off of their sums.
-
-    On a level slab these are more than half of what elements store, and a factor fills with them.
-    """
-    entries = matrix.tocoo()
-    row, column = entries.coords
-    size = np.sqrt(np.abs(matrix.diagonal()))
-    keep = np.abs(entries.data) > _ROUND_OFF * size[row] * size[column]
-    keep |= row == column  # solvers look for the whole diagonal
-    at = (row[keep], column[keep])
-    return sparse.coo_array((entries.data[keep], at), shape=matrix.shape).tocsc()
+        if expansion is None:
+            return assembled(blocks, self.dof_index, self.n_dofs)
+        # of every dof first, then by those that move by themselves
+        numbers = np.arange(self.fixed.size).reshape(-1, 6)
+        matrix = assembled(blocks, numbers, self.fixed.size)
+        return without_noughts((expansion.T @ matrix @ expansion).tocsc())
 
 
 def _check_numbers(group: Elements, n_nodes: int) -> None:

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Int
 from trundle._typing import Array
 from trundle.structure.elements.standing import ContactShape, Located, Weights
 
-__all__ = ["GROUND", "Damped", "Elements", "Standable"]
+__all__ = ["GROUND", "Damped", "Elements", "Repeating", "Standable"]
 
 GROUND = -1
 """Node number that stands for rigid ground."""
@@ -52,6 +52,16 @@ class Elements(Protocol):
         self, xyz: Float[Array, "elements nodes 3"]
     ) -> Float[Array, "elements dofs dofs"] | None:
         """Return the consistent mass of each element [kg], or None; `xyz` are its nodes [m]."""
+        ...
+
+
+@runtime_checkable
+class Repeating(Protocol):
+    """Elements of one section: those of one shape have the same matrices, wherever they are."""
+
+    @property
+    def of_one_section(self) -> bool:
+        """True: nothing but its shape tells an element from others."""
         ...
 
 

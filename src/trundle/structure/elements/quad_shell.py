@@ -271,6 +271,11 @@ class ShellGroup:
         return self.elements
 
     @property
+    def of_one_section(self) -> bool:
+        """True: elements of one shape have the same matrices."""
+        return True
+
+    @property
     def stands_on_ground(self) -> bool:
         """Whether an end may be rigid ground."""
         return False

@@ -303,6 +303,11 @@ class TriangleGroup:
         set_frozen(self, connectivity=numbers)
 
     @property
+    def of_one_section(self) -> bool:
+        """True: elements of one shape have the same matrices."""
+        return True
+
+    @property
     def stands_on_ground(self) -> bool:
         """Whether an end may be rigid ground."""
         return False

@@ -12,7 +12,7 @@ from trundle import read_results, save
 from trundle.errors import StudyError
 from trundle.run.whole_study import run_study
 from trundle.structure import ModalModel, build_floor
-from trundle.study_file import load_study
+from trundle.study_file import load_study, study_from_text
 
 START, END = GOOD.index("[floor]"), GOOD.index("[vehicle.truck]")
 
@@ -204,6 +204,24 @@ def test_what_modes_cannot_say_is_refused(tmp_path):
     path.write_text(text.replace('shapes = "s.csv"\n', ""))
     with pytest.raises(StudyError, match="give file alone, or frequencies and shapes"):
         load_study(path)
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        ("file", "frequencies"), ("file", "shapes"), ("file", "frequencies", "shapes"),
+        ("frequencies",), ("shapes",), (),
+    ],
+)  # fmt: skip
+def test_modes_stand_in_a_file_or_in_two_tables_and_not_in_both(tmp_path, given):
+    """Of both nobody knows which are meant; that there is none of the files is not looked at."""
+    names = "".join(f'{key} = "gone.{key}"\n' for key in given)
+    text = GOOD[:START] + f'[building]\nkind = "modes"\n{names}\n' + GOOD[END:]
+    with pytest.raises(StudyError) as caught:
+        study_from_text(text, folder=tmp_path)
+    (problem,) = (p for p in caught.value.problems if p.place == "building")
+    assert problem.value == (", ".join(given) or "nothing")
+    assert problem.remedy == "give file alone, or frequencies and shapes"
 
 
 def test_motion_that_nobody_measured_is_no_motion(tmp_path):

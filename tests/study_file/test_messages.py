@@ -5,6 +5,8 @@ import tomllib
 import pytest
 
 from studies import GOOD, LIBRARY, problems
+from trundle.errors import StudyError
+from trundle.study_file import study_from_text
 from trundle.study_file.lines import line_of, lines_of
 
 PLANAR = """kind = "planar"
@@ -125,3 +127,39 @@ def test_a_vehicle_without_a_kind_is_told_the_kinds_of_vehicles(tmp_path):
     assert "planar" in problem.rule
     assert "city_bus_2_axle" in problem.rule
     assert "reference_unit" not in problem.rule
+
+
+ROAD = '[[road]]\nclass = "B"\n'
+WALKER = '\n[[walker]]\nname = "main"\nguide = "p354"\npace = "2 Hz"\nat = ["3 m", "1 m"]\n'
+DAY = '\n[[schedule]]\nname = "d"\nroute = "main"\nper_hour = 2.0\n'
+STEP = 'dt = "5 ms"'
+
+
+def named(key):
+    """Return the good study with a vehicle of a name that needs quotes, and no such kind."""
+    text = GOOD.replace("[vehicle.truck]", f"[vehicle.{key}]")
+    text = text.replace('vehicle = "truck"', f"vehicle = {key}")
+    return text.replace("container_truck_40ft", "tank")
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "begins"),
+    [
+        (GOOD.replace(STEP, f'{STEP}\nentry = "static"'), "method[1].entry", "entry"),
+        (GOOD.replace(STEP, f'{STEP}\nentry_length = "9 m"'), "method[1].entry_length", "entry_l"),
+        (GOOD + '[roughness]\nn_min = "30 1/m"\nn_max = "40 1/m"\n', "method[1].dt", "dt"),
+        (GOOD.replace('["12 m", "3 m"]]', '["0.01 m", "3 m"]]'), "route[1].path", "path"),
+        (GOOD.replace(ROAD, ROAD + ROAD), "road[2]", "[[road]]"),
+        (GOOD + WALKER, "walker[1].name", "name"),
+        (GOOD.partition("[criteria]")[0] + DAY, "schedule[1]", "[[schedule]]"),
+        (named('"a]b"'), "vehicle.a]b.kind", "kind"),
+        (named('"tr\\u00fcck"'), "vehicle.trück.kind", "kind"),
+    ],
+)
+def test_whatever_can_be_found_in_the_file_has_its_line(text, place, begins):
+    """Also what is found only when sections are held against each other."""
+    with pytest.raises(StudyError) as caught:
+        study_from_text(text)
+    found = {p.place: p.line for p in caught.value.problems}
+    assert all(found.values())
+    assert text.splitlines()[found[place] - 1].startswith(begins)

@@ -1,10 +1,12 @@
 """Reduce vibrating things to matrices and step them through time."""
 
 from trundle.dynamics.damping import ByMaterial, Damping, ModalRatio, Rayleigh
-from trundle.dynamics.eigen import Modes, count_modes_below, natural_modes
+from trundle.dynamics.eigen import count_modes_below, modes_by_shifts, natural_modes
 from trundle.dynamics.exact import ExactRecursion, ModalRecursion
 from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
+from trundle.dynamics.modes import Basis, Modes
 from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
+from trundle.dynamics.pencil import Pencil, Product, SparsePencil, shift_near
 from trundle.dynamics.same_bits import repeatable
 from trundle.dynamics.sampling import (
     REACH,
@@ -17,11 +19,13 @@ from trundle.dynamics.sampling import (
 )
 from trundle.dynamics.sparse_solver import Factor, HalfSolve, available_backends, factorise
 from trundle.dynamics.stepping import Motion, Propagator, State
+from trundle.dynamics.superelement import Superelement, reduce_part
 from trundle.dynamics.system import LinearSystem, block_diagonal
 
 __all__ = [
     "REACH",
     "TOP",
+    "Basis",
     "ByMaterial",
     "Damping",
     "ExactRecursion",
@@ -35,9 +39,13 @@ __all__ = [
     "Motion",
     "NewmarkParameters",
     "NewmarkPropagator",
+    "Pencil",
+    "Product",
     "Propagator",
     "Rayleigh",
+    "SparsePencil",
     "State",
+    "Superelement",
     "are_modes_of",
     "available_backends",
     "block_diagonal",
@@ -47,9 +55,12 @@ __all__ = [
     "following_filters",
     "image_filters",
     "modes_as_arrays",
+    "modes_by_shifts",
     "modes_from_arrays",
     "natural_modes",
+    "reduce_part",
     "repeatable",
     "responses_of",
     "restoring_filter",
+    "shift_near",
 ]

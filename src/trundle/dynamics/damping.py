@@ -11,7 +11,7 @@ from jaxtyping import Float
 
 from trundle._checks import non_negative, positive, set_frozen, within
 from trundle._typing import Array, Matrix, SparseMatrix
-from trundle.dynamics.eigen import Modes
+from trundle.dynamics.modes import Modes
 from trundle.errors import FitnessWarning, InputError
 
 __all__ = ["ByMaterial", "Damping", "ModalRatio", "Rayleigh"]

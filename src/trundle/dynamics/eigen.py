@@ -5,10 +5,7 @@ Large sparse systems are taken slice by slice (`dynamics.lanczos`), small ones w
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
-from jaxtyping import Float, Int
 from scipy import linalg, sparse
 from threadpoolctl import threadpool_limits
 
@@ -16,88 +13,17 @@ from trundle._checks import positive
 from trundle._progress import Progress
 from trundle._typing import Array, Matrix, SparseMatrix
 from trundle.dynamics.lanczos import EigenSlice, march
+from trundle.dynamics.modes import Modes
+from trundle.dynamics.pencil import Pencil, Product, SparsePencil, shift_near
 from trundle.dynamics.sparse_solver import factorise
 from trundle.errors import UnrestrainedModeError
 
-__all__ = ["Modes", "count_modes_below", "natural_modes"]
+__all__ = ["count_modes_below", "modes_by_shifts", "natural_modes"]
 
 _DENSE_LIMIT = 600
 _DENSE_FALLBACK = 6000
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any floor mode
 _RIGID = 1e-4  # rad2/s2: an eigenvalue below this is a motion without strain
-
-
-_AT_ONCE = 64  # modes whose energies are formed together
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Modes:
-    """Hold the natural modes of an undamped system, scaled to unit modal mass.
-
-    Attributes
-    ----------
-    omega : ndarray of float, shape (n_modes,)
-        Natural circular frequencies, rising [rad/s].
-    shapes : ndarray of float, shape (n_dofs, n_modes)
-        Mode shapes with ``shapes.T @ M @ shapes = I`` [1/sqrt(kg)].
-    residuals : ndarray of float, shape (n_modes,)
-        ``|K phi - lambda M phi| / |K phi|`` of each mode.
-    f_max : float
-        Every mode below this frequency is here [Hz].
-    """
-
-    omega: Float[Array, " modes"]
-    shapes: Float[Array, "dofs modes"]
-    residuals: Float[Array, " modes"]
-    f_max: float
-
-    @property
-    def frequencies(self) -> Float[Array, " modes"]:
-        """Natural frequencies [Hz]."""
-        return self.omega / (2.0 * np.pi)
-
-    @property
-    def n_modes(self) -> int:
-        """Number of modes."""
-        return len(self.omega)
-
-    def seen(self, reader: SparseMatrix) -> Float[Array, "rows modes"]:
-        """Return the shapes as rows of weights (n_rows, n_dofs) see them."""
-        return np.asarray(reader @ self.shapes)
-
-    def at(self, dofs: Int[Array, " dofs"]) -> Float[Array, "dofs modes"]:
-        """Return the shapes at some dofs."""
-        return self.shapes[dofs]
-
-    def energies(self, matrix: SparseMatrix) -> Float[Array, " modes"]:
-        """Return ``phi.T @ K @ phi`` of each mode: twice its energy in a stiffness [1/s2]."""
-        out = np.empty(self.n_modes)
-        for start in range(0, self.n_modes, _AT_ONCE):
-            some = self.shapes[:, start : start + _AT_ONCE]
-            out[start : start + _AT_ONCE] = np.einsum("ij,ij->j", some, matrix @ some)
-        return out
-
-    def forces(self, load: Float[Array, " dofs"]) -> Float[Array, " modes"]:
-        """Return the modal forces of a load."""
-        return self.shapes.T @ load
-
-    def below(self, f: float) -> Modes:
-        """Return the modes below a frequency [Hz], at most `f_max`."""
-        fewer = self.first(int(np.searchsorted(self.frequencies, f)))
-        return replace(fewer, f_max=min(f, self.f_max))
-
-    def first(self, n_modes: int) -> Modes:
-        """Return the first modes, with the same `f_max`."""
-        return self.part(slice(n_modes))
-
-    def part(self, which: slice) -> Modes:
-        """Return some of the modes, with the same `f_max`."""
-        return replace(
-            self,
-            omega=self.omega[which],
-            shapes=self.shapes[:, which],
-            residuals=self.residuals[which],
-        )
 
 
 def count_modes_below(
@@ -191,29 +117,70 @@ def _sparse(
     """Return eigenvalues, shapes and residuals."""
     wanted = count_modes_below(mass, stiffness, f_max, backend=backend)
     n_dofs = mass.shape[0]
-    limit = (2.0 * np.pi * f_max) ** 2
     if wanted > n_dofs // 6 and n_dofs <= _DENSE_FALLBACK:
         return _whole(mass, stiffness, f_max)  # most of a small spectrum: cheaper whole
+    pencil = SparsePencil(mass=mass, stiffness=stiffness, backend=backend)
+    try:
+        return _by_shifts(pencil, wanted, (2.0 * np.pi * f_max) ** 2, progress)
+    except linalg.LinAlgError:  # fewer masses than a block has columns
+        if n_dofs > _DENSE_FALLBACK:
+            raise
+        return _whole(mass, stiffness, f_max)
+
+
+def modes_by_shifts(pencil: Pencil, *, f_max: float, progress: Progress | None = None) -> Modes:
+    """Find every natural mode below a frequency, of matrices that are known by their products.
+
+    Parameters
+    ----------
+    pencil : Pencil
+        Stiffness and mass, which can be factorised at any shift; shapes are by its coordinates.
+    f_max : float
+        All modes below this frequency are returned [Hz].
+    progress : callable, optional
+        Told about how much of the work is done, 0 to 1.
+
+    Raises
+    ------
+    ConvergenceError
+        The count found differs from the count by inertia.
+    """
+    end = shift_near(pencil, 2.0 * np.pi * positive("f_max", f_max))
+    wanted, limit = end.below, end.value
+    del end
+    n = int(pencil.mass.shape[0])
+    if n <= _DENSE_LIMIT or (wanted > n // 6 and n <= _DENSE_FALLBACK):
+        mass, stiffness = (np.asarray(one @ np.eye(n)) for one in (pencil.mass, pencil.stiffness))
+        eigenvalues, shapes, residuals = _whole(mass, stiffness, f_max)
+    else:
+        eigenvalues, shapes, residuals = _by_shifts(pencil, wanted, limit, progress)
+    return Modes(
+        omega=np.sqrt(np.maximum(eigenvalues, 0.0)),
+        shapes=shapes,
+        residuals=residuals,
+        f_max=float(f_max),
+    )
+
+
+def _by_shifts(
+    pencil: Pencil, wanted: int, limit: float, progress: Progress | None
+) -> tuple[Array, Array, Array]:
+    """Return eigenvalues below a limit, so many by inertia, with shapes and residuals."""
     eigenvalues, residuals = np.zeros(wanted), np.zeros(wanted)
-    shapes = np.empty((n_dofs, wanted))
+    shapes = np.empty((pencil.mass.shape[0], wanted))
 
     def keep(found: int, part: EigenSlice) -> None:
         here = slice(found, found + len(part.eigenvalues))
         eigenvalues[here] = part.eigenvalues
         shapes[:, here] = part.shapes * _signs(part.shapes)
-        residuals[here] = _residuals(mass, stiffness, part.eigenvalues, part.shapes)
+        residuals[here] = _residuals(pencil.mass, pencil.stiffness, part.eigenvalues, part.shapes)
         if progress is not None:
             progress(0.98 * np.count_nonzero(eigenvalues) / wanted)
 
-    try:
-        if wanted:
-            # Tall thin products are held up by memory; threads of one would only take turns.
-            with threadpool_limits(limits=1):
-                march(mass, stiffness, wanted, limit, backend=backend, keep=keep)
-    except linalg.LinAlgError:  # fewer masses than a block has columns
-        if n_dofs > _DENSE_FALLBACK:
-            raise
-        return _whole(mass, stiffness, f_max)
+    if wanted:
+        # Tall thin products are held up by memory; threads of one would only take turns.
+        with threadpool_limits(limits=1):
+            march(pencil, wanted, limit, keep=keep)
     return eigenvalues, shapes, residuals
 
 
@@ -223,7 +190,7 @@ def _whole(mass: Matrix, stiffness: Matrix, f_max: float) -> tuple[Array, Array,
     return eigenvalues, shapes, _residuals(mass, stiffness, eigenvalues, shapes)
 
 
-def _residuals(mass: Matrix, stiffness: Matrix, eigenvalues: Array, shapes: Array) -> Array:
+def _residuals(mass: Product, stiffness: Product, eigenvalues: Array, shapes: Array) -> Array:
     elastic = stiffness @ shapes
     error = np.linalg.norm(elastic - (mass @ shapes) * eigenvalues, axis=0)
     return error / np.maximum(np.linalg.norm(elastic, axis=0), np.finfo(float).tiny)

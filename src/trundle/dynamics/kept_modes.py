@@ -8,7 +8,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics.eigen import Modes, count_modes_below
+from trundle.dynamics.eigen import count_modes_below
+from trundle.dynamics.modes import Modes
 
 __all__ = ["are_modes_of", "modes_as_arrays", "modes_from_arrays"]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import linalg
 
-from trundle._typing import Array, SparseMatrix
+from trundle._typing import Array
+from trundle.dynamics.pencil import Product
 from trundle.dynamics.sparse_solver import Factor
 
 __all__ = ["BLOCK", "Krylov"]
@@ -23,7 +24,7 @@ class Krylov:
 
     def __init__(
         self,
-        mass: SparseMatrix,
+        mass: Product,
         factor: Factor,
         capacity: int,
         *,
@@ -90,7 +91,7 @@ class Krylov:
         return self._basis[:, : self.size] @ ritz
 
 
-def _orthonormal(mass: SparseMatrix, block: Array) -> tuple[Array, Array, Array]:
+def _orthonormal(mass: Product, block: Array) -> tuple[Array, Array, Array]:
     """Return an M-orthonormal block, M times it, and R of ``block = orthonormal @ R``."""
     loaded, triangle = mass @ block, np.eye(block.shape[1])
     for _ in range(2):  # the second time on a block that is orthonormal but for round-off

@@ -23,12 +23,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
-from scipy import sparse
 
-from trundle._typing import Array, SparseMatrix
+from trundle._typing import Array
 from trundle.dynamics.krylov import BLOCK, Krylov
-from trundle.dynamics.sparse_solver import Factor, factorise
-from trundle.errors import ConvergenceError, UnrestrainedModeError
+from trundle.dynamics.pencil import Pencil, Product, Shift, shift_near
+from trundle.errors import ConvergenceError
 
 __all__ = ["EigenSlice", "march"]
 
@@ -41,7 +40,6 @@ _MIDDLE = 0.62  # of the highest frequency: as many modes above as below, with w
 _EQUAL = 1e-5  # relative distance of eigenvalues that may be copies of one
 _ANEW = 60  # searches beside what is found, each of which shows another block of copies
 _LARGEST = 2400  # modes that one shift may be left with where no shift parts them
-_NUDGES = 4  # shifts tried beside each other if one meets an eigenvalue
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,36 +58,23 @@ class EigenSlice:
     shapes: Float[Array, "dofs modes"]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Shift:
-    """A shift, its factorisation, and how many eigenvalues lie below it."""
-
-    value: float
-    factor: Factor
-    below: int
-
-
 def march(
-    mass: SparseMatrix,
-    stiffness: SparseMatrix,
+    pencil: Pencil,
     wanted: int,
     limit: float,
     *,
-    backend: str | None,
     keep: Callable[[int, EigenSlice], None],
 ) -> None:
     """Find the lowest eigenpairs of ``K x = lambda M x``, a slice at a time.
 
     Parameters
     ----------
-    mass, stiffness : sparse array, shape (n_dofs, n_dofs)
+    pencil : Pencil
         Symmetric M [kg] and K [N/m].
     wanted : int
         How many eigenvalues lie below `limit`, by inertia.
     limit : float
         End of the part of the spectrum that is looked for [rad2/s2].
-    backend : str, optional
-        Sparse solver.
     keep : callable
         Given the number of eigenvalues below the next slice, and the slice; called from two
         threads where the spectrum is long.
@@ -99,13 +84,12 @@ def march(
     ConvergenceError
         A slice holds more or fewer eigenvalues than inertia counts.
     """
-    pencil = _Pencil(mass=mass, stiffness=stiffness, backend=backend)
-    lowest = pencil.at(-_SHIFT)
+    lowest = Shift(value=-_SHIFT, factor=pencil.factorise(-_SHIFT))
     if wanted <= 2 * _SLICE:
         _march(pencil, _Interval(first=0, edge=0.0, end=wanted, limit=limit), lowest, keep)
         return
     # Floors have about twice as many modes in an octave as in the one below; this halves the work.
-    middle = pencil.near(_MIDDLE * np.sqrt(limit))
+    middle = shift_near(pencil, _MIDDLE * np.sqrt(limit))
     lower = _Interval(first=0, edge=0.0, end=middle.below, limit=middle.value)
     upper = _Interval(first=middle.below, edge=middle.value, end=wanted, limit=limit)
     del middle
@@ -125,37 +109,10 @@ class _Interval:
     limit: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Pencil:
-    """A pair of matrices, factorised at any shift."""
-
-    mass: SparseMatrix
-    stiffness: SparseMatrix
-    backend: str | None
-
-    def at(self, value: float) -> _Shift:
-        """Factorise K - value M."""
-        matrix = sparse.csc_array(self.stiffness - value * self.mass)
-        factor = factorise(matrix, backend=self.backend)
-        return _Shift(value=value, factor=factor, below=factor.n_negative)
-
-    def near(self, omega: float) -> _Shift:
-        """Factorise at a circular frequency, or just beside it if it is a natural one."""
-        for nudge in range(_NUDGES):
-            try:
-                return self.at((omega * (1.0 + 1e-6 * nudge)) ** 2)
-            except UnrestrainedModeError:
-                continue
-        raise ConvergenceError(
-            f"K - omega^2 M cannot be factorised at {omega / (2.0 * np.pi):.6g} Hz",
-            residual=float("nan"),
-        )
-
-
 def _march(
-    pencil: _Pencil,
+    pencil: Pencil,
     interval: _Interval,
-    shift: _Shift | None,
+    shift: Shift | None,
     keep: Callable[[int, EigenSlice], None],
 ) -> None:
     found, wanted, edge = interval.first, interval.end, interval.edge
@@ -216,15 +173,15 @@ def _copies(eigenvalues: Array) -> int:
 
 
 def _completed(
-    pencil: _Pencil, shift: _Shift, part: EigenSlice, bounds: tuple[float, float], found: int
+    pencil: Pencil, shift: Shift, part: EigenSlice, bounds: tuple[float, float], found: int
 ) -> EigenSlice:
     """Return a slice with all copies that inertia counts up to its end."""
-    wanted = pencil.near(float(np.sqrt(bounds[1]))).below - found
+    wanted = shift_near(pencil, float(np.sqrt(bounds[1]))).below - found
     return _hunted(pencil.mass, shift, part, bounds, wanted)
 
 
 def _hunted(
-    mass: SparseMatrix, shift: _Shift, part: EigenSlice, bounds: tuple[float, float], wanted: int
+    mass: Product, shift: Shift, part: EigenSlice, bounds: tuple[float, float], wanted: int
 ) -> EigenSlice:
     """Search anew beside what is found until so many eigenpairs lie within bounds.
 
@@ -252,8 +209,8 @@ def _hunted(
 
 
 def _beside(
-    mass: SparseMatrix,
-    shift: _Shift,
+    mass: Product,
+    shift: Shift,
     shapes: Array,
     bounds: tuple[float, float],
     *,
@@ -276,9 +233,7 @@ def _beside(
     return EigenSlice(eigenvalues=np.zeros(0), shapes=np.zeros((mass.shape[0], 0)))
 
 
-def _next_shift(
-    pencil: _Pencil, interval: _Interval, found: int, last: Array, edge: float
-) -> _Shift:
+def _next_shift(pencil: Pencil, interval: _Interval, found: int, last: Array, edge: float) -> Shift:
     """Place a shift in the middle of the modes that it is to find."""
     ahead = 0.5 * _share(interval.end - found)
     start, end = np.sqrt(edge), np.sqrt(interval.limit)
@@ -289,9 +244,9 @@ def _next_shift(
     else:
         spacing = (end - start) / (interval.end - found)
     distance = min(ahead * spacing, 0.5 * (end - start))
-    shift = pencil.near(float(start + distance))
+    shift = shift_near(pencil, float(start + distance))
     for _ in range(40):
-        shift = pencil.near(float(start + distance))
+        shift = shift_near(pencil, float(start + distance))
         if shift.below - found <= 1.5 * ahead + BLOCK:
             return shift
         distance *= max(0.25, ahead / (shift.below - found))
@@ -304,7 +259,7 @@ def _next_shift(
 
 
 def _near(
-    mass: SparseMatrix, shift: _Shift, left: int, right: int, bounds: tuple[float, float]
+    mass: Product, shift: Shift, left: int, right: int, bounds: tuple[float, float]
 ) -> EigenSlice:
     """Return so many eigenpairs on the left of a shift and on its right, all within bounds."""
     wanted = left + right

@@ -57,7 +57,7 @@ def modes_of(floor: Structure, *, f_max: float, progress: Progress | None = None
     if kept is not None and kept.f_max == f_max:
         return kept
     modes = floor.modes(f_max, progress=progress)
-    if file is not None:
+    if file is not None and modes.basis is None:  # by parts they are found again as fast
         _write(file, modes)
     return modes
 

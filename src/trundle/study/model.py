@@ -21,8 +21,9 @@ from trundle.simulate import Crossing
 from trundle.simulate.sources.crossing import TAIL
 from trundle.simulate.sources.passage import Passage
 from trundle.simulate.sources.source import Source
-from trundle.structure import FloorPlan, Spot, Structure, build_floor
+from trundle.structure import Floor, FloorPlan, Spot, Structure, build_floor
 from trundle.structure.building import Building, Meshing, build_building
+from trundle.structure.superelements import Parting
 from trundle.study.map_plan import MapPlan
 from trundle.study.plans import Assessment, Case, Drive, MethodPlan, Note, Printed, PrintedBound
 from trundle.traffic import Schedule
@@ -77,6 +78,8 @@ class Study:
         The building that it was meshed from, if it was.
     meshing : Meshing or None
         How that was meshed.
+    parting : Parting or None
+        How the floor is cut into parts by which its modes are found, if it is.
     told : tuple of FitnessWarning
         What was noticed when files were read: what a drawing shows that was not taken.
     mesh_size : float
@@ -127,6 +130,7 @@ class Study:
     plan: FloorPlan | None
     building: Building | None
     meshing: Meshing | None
+    parting: Parting | None
     told: tuple[FitnessWarning, ...]
     mesh_size: float
     drives: Mapping[str, Drive]
@@ -223,12 +227,17 @@ class Study:
         """
         size = self.mesh_size * factor
         if self.plan is not None:
-            return replace(self, floor=build_floor(self.plan, mesh_size=size), mesh_size=size)
+            floor = build_floor(self.plan, mesh_size=size)
+            return replace(self, floor=self._parted(floor), mesh_size=size)
         if self.building is None or self.meshing is None:
             raise InputError(f"{self.floor.name} came as a mesh: it cannot be meshed anew")
         meshing = self.meshing.scaled(factor)
-        floor = build_building(self.building, meshing)
+        floor = self._parted(build_building(self.building, meshing))
         return replace(self, floor=floor, meshing=meshing, mesh_size=size)
+
+    def _parted(self, floor: Floor) -> Structure:
+        """Return a floor cut into parts, if the study cuts it."""
+        return floor if self.parting is None else self.parting.of(floor)
 
     @property
     def criteria(self) -> tuple[Criterion, ...]:

@@ -138,7 +138,8 @@ def with_model(draft: Draft, section: AnyModel) -> tuple[Draft, list[Problem]]:
     if isinstance(section, MatricesSection):
         return _read_with(draft, section, lambda files: _matrices(section, files))
     if isinstance(section, ModesSection):
-        if (section.file is None) == (section.frequencies is None or section.shapes is None):
+        tables = (section.frequencies is not None, section.shapes is not None)
+        if any(tables) if section.file is not None else not all(tables):
             return draft, [_one_way(section)]
         return _read_with(draft, section, lambda files: _modes(section, files))
     return _with_one_file(draft, section)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -34,6 +35,8 @@ class StudyFile:
         Number of sections in each list, sound or not.
     given : frozenset of str
         Names of all that stands in the file, sound or not.
+    shaking : tuple of str
+        The lists whose sections shake a floor by themselves: walkers, machines.
     """
 
     source: str
@@ -47,6 +50,7 @@ class StudyFile:
     declared: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
     counts: dict[str, int] = field(default_factory=dict[str, int])
     given: frozenset[str] = frozenset()
+    shaking: tuple[str, ...] = ()
 
     def items(self, name: str) -> list[Any]:
         """Return the sections of a list."""
@@ -55,6 +59,22 @@ class StudyFile:
     def has_bad(self, name: str) -> bool:
         """Return True when a list holds a section with mistakes."""
         return len(self.lists.get(name, [])) < self.counts.get(name, 0)
+
+    @property
+    def acting(self) -> set[str]:
+        """Names of all that can act on the floor, also of those with mistakes."""
+        return {name for kind in ("route", *self.shaking) for name in self.declared.get(kind, ())}
+
+    def place_of(self, name: str, *kinds: str) -> str:
+        """Return where a section of a name stands, as messages write it: ``method[2]``."""
+        places = (place for place, known in self.names(*kinds) if known == name)
+        return next(places, "file")
+
+    def names(self, *kinds: str) -> Iterator[tuple[str, str]]:
+        """Give where each section of some lists stands, and its name."""
+        for kind in kinds:
+            for i, section in self.lists.get(kind, []):
+                yield f"{kind}[{i + 1}]", section.name
 
     @property
     def content_hash(self) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from trundle.signals import Isolation
 from trundle.simulate import Source
 from trundle.structure import FloorPlan, Structure, Surface, can_move
 from trundle.structure.building import Building, Meshing
+from trundle.structure.superelements import Parting
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Extent, extent_of
 from trundle.study.plans import Assessment, Drive, MethodPlan
@@ -56,6 +56,8 @@ class Draft:
         What it was built of.
     meshing : Meshing or None
         How that was meshed.
+    parting : Parting or None
+        How it is cut into parts, if it is.
     mesh_size : float
         Largest edge of an element [m].
     vehicles : mapping of str to Vehicle
@@ -93,6 +95,7 @@ class Draft:
     model: Structure | None = None
     building: Building | None = None
     meshing: Meshing | None = None
+    parting: Parting | None = None
     mesh_size: float = 1.0
     vehicles: Mapping[str, Vehicle] = field(default_factory=dict[str, Vehicle])
     drives: Mapping[str, Drive] = field(default_factory=dict[str, Drive])
@@ -107,6 +110,11 @@ class Draft:
     read: Mapping[str, bytes] = field(default_factory=dict[str, bytes])
     isolations: Mapping[str, Isolation] = field(default_factory=dict[str, Isolation])
     map: MapPlan | None = None
+
+    @property
+    def acting(self) -> set[str]:
+        """Names of all that can act on the floor, also of what has mistakes."""
+        return self.file.acting | set(self.sources)
 
     @property
     def extent(self) -> Extent | None:
@@ -149,29 +157,57 @@ def refer(place: str, value: str, known: Collection[str], what: str) -> Iterator
         yield unknown(place, value, sorted(known), what)
 
 
-def unique(place: str, names: Iterable[str]) -> Iterator[Problem]:
-    """Give the names that are there more than once.
+def unique(named: Iterable[tuple[str, str]]) -> Iterator[Problem]:
+    """Give the names that are there more than once, where each stands for the second time.
 
     Parameters
     ----------
-    place : str
-        What is named.
-    names : iterable of str
-        All names.
+    named : iterable of (str, str)
+        Where what is named stands, and its name.
 
     Yields
     ------
     Problem
         One for each name.
     """
-    for name, times in Counter(names).items():
-        if times > 1:
+    places: dict[str, list[str]] = {}
+    for place, name in named:
+        places.setdefault(name, []).append(place)
+    for name, there in places.items():
+        if len(there) > 1:
             yield Problem(
-                place=place,
-                value=f"{name!r} {times} times",
+                place=there[1],
+                value=f"{name!r} {len(there)} times",
                 rule="names must differ, for results are found by them",
-                remedy="rename or remove one",
+                remedy=f"rename or remove one; the first is {there[0]}",
             )
+
+
+def behind_the_end(draft: Draft, place: str, begins: float) -> Iterator[Problem]:
+    """Give what begins when the record has ended: it would be in no result.
+
+    Parameters
+    ----------
+    draft : Draft
+        Its file says how long records are, or leaves them to end when all has left.
+    place : str
+        Where it says when it begins.
+    begins : float
+        When that is [s].
+
+    Yields
+    ------
+    Problem
+        One, or nothing.
+    """
+    duration = None if draft.file.general is None else draft.file.general.duration
+    if duration is not None and begins >= duration:
+        yield Problem(
+            place=place,
+            value=f"a beginning at {begins:g} s",
+            rule=f"the record ends at {duration:g} s, and nothing of it would be in there",
+            remedy="let it begin earlier, or lengthen or remove duration",
+        )
 
 
 def surface_at(

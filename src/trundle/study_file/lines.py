@@ -13,16 +13,21 @@ from typing import Any
 
 from trundle.errors import Problem, StudyError
 
-__all__ = ["line_of", "lines_of", "parse"]
+__all__ = ["line_of", "lines_of", "parse", "rows_of", "shown_key"]
 
-_HEADING = re.compile(r"^\s*(\[\[?)\s*([^\[\]]+?)\s*\]")
-_WORD = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
-_KEY = re.compile(rf"^\s*({_WORD}(?:\s*\.\s*{_WORD})*)\s*=")
+_ENDS = re.compile(r"\r\n|\r|\n")
+_WORD = r"""(?:[\w-]+|"(?:\\.|[^"\\])*"|'[^']*')"""
+_DOTTED = rf"{_WORD}(?:\s*\.\s*{_WORD})*"
+_HEADING = re.compile(rf"^\s*(\[\[?)\s*({_DOTTED})\s*\]")
+_KEY = re.compile(rf"^\s*({_DOTTED})\s*=")
 _PART = re.compile(_WORD)
 _TRIPLE = re.compile(r'"{3}|\'{3}')
+# the rest of a text of several lines: quotes behind a backslash end none, and up to two may stand
+# before those that do
+_END = {'"' * 3: r'(?:\\.|[^\\])*?"{3,5}', "'" * 3: r".*?'{3,5}"}
 _TEXTS = re.compile(
-    r"""(?x) "{3}(?:\\.|.)*?"{3} | '{3}.*?'{3} | ("{3}|'{3})
-    | "(?:\\.|[^"\\])*" | '[^']*' | \#.*"""
+    "|".join(f"{quotes}{rest}" for quotes, rest in _END.items())
+    + r"""|("{3}|'{3})|"(?:\\.|[^"\\])*"|'[^']*'|\#.*"""
 )  # texts, the quotes that open one of several lines, and comments
 
 _WORDS = {
@@ -63,7 +68,7 @@ def _no_toml(text: str, said: str) -> Problem:
     at = re.search(r"\(at line (\d+)", said)
     line = int(at.group(1)) if at else _last_opened(text) if "end of document" in said else None
     rule = next((words for begin, words in _WORDS.items() if said.startswith(begin)), "")
-    rows = text.splitlines()
+    rows = text.split("\n")  # as the TOML reader counts them
     shown = rows[line - 1].strip() if line is not None and line <= len(rows) else ""
     shown = shown if len(shown) <= 60 else shown[:57] + "..."
     return Problem(
@@ -96,11 +101,14 @@ def lines_of(text: str) -> dict[str, int]:
     found: dict[str, int] = {}
     counts: Counter[str] = Counter()
     prefix, depth, closing = "", 0, ""
-    for number, row in enumerate(text.splitlines(), start=1):
+    for number, row in enumerate(rows_of(text), start=1):
+        rest = row
         if closing:  # within a text of several lines
-            closing = "" if closing in row else closing
-            continue
-        if depth <= 0:
+            ended = re.match(_END[closing], row)
+            if ended is None:
+                continue
+            rest = row[ended.end() :]
+        elif depth <= 0:
             if heading := _HEADING.match(row):
                 prefix = _place(heading.group(2), counts, listed=heading.group(1) == "[[")
                 found.setdefault(prefix, number)
@@ -108,12 +116,21 @@ def lines_of(text: str) -> dict[str, int]:
             if key := _KEY.match(row):
                 name = ".".join(_parts(key.group(1)))
                 found.setdefault(f"{prefix}.{name}" if prefix else name, number)
-        bare = _TEXTS.sub(r"\1", row)
-        opened = _TRIPLE.search(bare)
-        closing = opened.group() if opened else ""
-        bare = bare[: opened.start()] if opened else bare
+        bare, closing = _without_texts(rest)
         depth = max(0, depth) + sum(bare.count(c) for c in "[{") - sum(bare.count(c) for c in "]}")
     return found
+
+
+def rows_of(text: str) -> list[str]:
+    """Return the lines of a text as editors count them: signs such as U+2028 end none."""
+    return _ENDS.split(text)
+
+
+def _without_texts(row: str) -> tuple[str, str]:
+    """Return a row without texts and comments, and the quotes of a text that goes on behind it."""
+    bare = _TEXTS.sub(r"\1", row)
+    opened = _TRIPLE.search(bare)
+    return (bare, "") if opened is None else (bare[: opened.start()], opened.group())
 
 
 def line_of(place: str, lines: dict[str, int]) -> int | None:
@@ -138,4 +155,17 @@ def _place(name: str, counts: Counter[str], *, listed: bool) -> str:
 
 
 def _parts(name: str) -> list[str]:
-    return [part.strip("\"'") for part in _PART.findall(name)]
+    return [shown_key(_unquoted(part)) for part in _PART.findall(name)]
+
+
+def _unquoted(word: str) -> str:
+    """Return the key that a word of TOML writes, its escapes read."""
+    try:
+        return next(iter(tomllib.loads(f"{word} = 0")))
+    except ValueError:  # of a file that is no TOML
+        return word.strip("\"'")
+
+
+def shown_key(key: str) -> str:
+    """Return a key as places write it: signs that do not show are escaped."""
+    return key if key.isprintable() else repr(key)

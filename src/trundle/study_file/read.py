@@ -14,7 +14,7 @@ from trundle.study_file.alternatives import by_likeness
 from trundle.study_file.document import StudyFile
 from trundle.study_file.fields import Section
 from trundle.study_file.kinds import SectionKind
-from trundle.study_file.lines import parse
+from trundle.study_file.lines import parse, shown_key
 from trundle.study_file.rules import rule_of
 from trundle.study_file.sections import KINDS
 from trundle.study_file.sections.general import GeneralSection
@@ -69,6 +69,7 @@ def read_text(text: str, source: str) -> tuple[StudyFile, list[Problem]]:
         declared=_declared(data),
         counts={k: len(data[k]) for k in _LISTS if isinstance(data.get(k), list)},
         given=frozenset(data),
+        shaking=_SHAKING,
     )
     return study, problems
 
@@ -146,7 +147,8 @@ def _section(kind: Any, data: Any, place: str, problems: list[Problem]) -> Any:
     try:
         return TypeAdapter(kind).validate_python(data)
     except ValidationError as error:
-        errors = by_likeness([cast("dict[str, Any]", e) for e in error.errors()], data)
+        given = [cast("dict[str, Any]", e) for e in error.errors()]
+        errors = by_likeness(_without_tags(given, kind, data), data)
         inner = {e["loc"][:n] for e in errors for n in range(len(e["loc"]))}
         problems += [
             _problem(e, place, kind, data)
@@ -180,7 +182,7 @@ def _named(data: Mapping[str, Any], name: str, problems: list[Problem]) -> dict[
         problems.append(_missing(name))
     sections = {}
     for key, table in tables.items():
-        section = _section(_NAMED_TABLES[name], table, f"{name}.{key}", problems)
+        section = _section(_NAMED_TABLES[name], table, _path(name, [key]), problems)
         if section is not None:
             sections[key] = section
     return sections
@@ -210,8 +212,6 @@ def _list(
 
 def _problem(error: dict[str, Any], place: str, kind: Any, data: Mapping[str, Any]) -> Problem:
     location = list(error["loc"])
-    if location and location[0] in _tags(kind, data):
-        del location[0]  # the tag of a discriminated union; the file has no such key
     path = _path(place, location)
     if error["type"] == "extra_forbidden":
         known = _fields_within(kind, data, location[:-1])
@@ -273,8 +273,8 @@ def _path(place: str, location: list[Any]) -> str:
         if isinstance(part, int):
             path += f"[{part + 1}]"
         else:
-            shown = part if str(part).isprintable() else repr(part)
-            path += f".{shown}" if path else str(shown)
+            shown = shown_key(str(part))
+            path += f".{shown}" if path else shown
     return path
 
 
@@ -291,8 +291,12 @@ def _tag_names(kind: Any) -> list[str]:
     ]
 
 
-def _tags(kind: Any, data: Mapping[str, Any]) -> set[str]:
-    return {str(data.get("kind"))} if len(_members(kind)) > 1 else set()
+def _without_tags(
+    errors: list[dict[str, Any]], kind: Any, data: Mapping[str, Any]
+) -> list[dict[str, Any]]:
+    """Return errors without the tag that leads their locations; the file has no such key."""
+    tag = (str(data.get("kind")),) if len(_members(kind)) > 1 else ()
+    return [{**e, "loc": e["loc"][1:]} if e["loc"][:1] == tag else e for e in errors]
 
 
 def _fields(kind: Any, data: Mapping[str, Any]) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from pydantic import BeforeValidator
 from pydantic_core import PydanticCustomError
 
 from trundle.errors import InputError
+from trundle.study_file.lines import rows_of
 from trundle.traffic import DAY
 from trundle.units import to_si
 
@@ -92,7 +93,7 @@ def read_timetable(path: Path) -> dict[str, list[float]]:
         A file that cannot be read, a row that is none, with its line.
     """
     text = _text_of(path)
-    lines = [(i, one) for i, one in enumerate(text.splitlines(), start=1) if one.strip()]
+    lines = [(i, one) for i, one in enumerate(rows_of(text), start=1) if one.strip()]
     lines = [(i, one) for i, one in lines if not one.lstrip().startswith("#")]
     if not lines:
         raise InputError(f"{path.name}: is empty; a timetable has columns time and route")

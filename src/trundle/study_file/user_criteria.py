@@ -11,7 +11,7 @@ import numpy as np
 
 from trundle.criteria import BY_FREQUENCY, Criterion
 from trundle.errors import InputError, StudyError
-from trundle.study_file.lines import parse
+from trundle.study_file.lines import parse, rows_of
 from trundle.units import to_si
 
 __all__ = ["read_criteria"]
@@ -92,7 +92,7 @@ def _from_toml(text: str, path: Path) -> tuple[Criterion, ...]:
 
 
 def _from_csv(text: str, path: Path) -> Criterion:
-    lines = text.splitlines()
+    lines = rows_of(text)
     notes = [line.lstrip("# ") for line in lines if line.startswith("#")]
     entry: dict[str, Any] = {"name": path.stem}
     entry |= {k.strip(): v.strip() for k, _, v in (note.partition("=") for note in notes) if v}

@@ -173,7 +173,8 @@ def wheels_off(draft: Draft) -> Iterator[Problem]:
         for one in draft.methods.values():
             dt = one.interaction.integration.dt
             _, mistakes = attempted(
-                f"method {one.name!r}.dt", lambda c=crossing, d=dt: check_within(c, d)
+                f"{draft.file.place_of(one.name, 'method')}.dt",
+                lambda c=crossing, d=dt: check_within(c, d),
             )
             yield from mistakes
         if not section.through:

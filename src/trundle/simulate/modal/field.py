@@ -56,7 +56,7 @@ def field_motion(
     state, before, at = np.zeros((len(square), 2)), np.zeros(len(square)), 0
     turn = prepared.propagator
     for start, stop in standing.windows():
-        loads = _loads(standing, forces, start, stop) @ prepared.modes.shapes
+        loads = prepared.modes.seen(_loads(standing, forces, start, stop))
         for step, load in enumerate(loads, start=start):
             if step == 0:
                 state[:, 0] = load / square if at_rest else 0.0

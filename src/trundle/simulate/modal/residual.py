@@ -16,9 +16,11 @@ R. R. Craig, Structural Dynamics (1981), section 15.2 (mode-acceleration method)
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
+from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes
@@ -33,6 +35,21 @@ __all__ = [
 ]
 
 _COLUMNS = 64  # right-hand sides solved at once
+
+
+@runtime_checkable
+class Selective(Protocol):
+    """A factor that answers for few places without a solution of all dofs."""
+
+    def between(self, rows: SparseMatrix, columns: SparseMatrix) -> Float[Array, "rows columns"]:
+        """Return ``rows K^-1 columns^T`` for rows of weights over all dofs."""
+        ...
+
+
+def _unit_rows(dofs: Array, n_dofs: int) -> SparseMatrix:
+    """Return rows of weights that each see one dof."""
+    entries = (np.ones(len(dofs)), (np.arange(len(dofs)), dofs))
+    return sparse.csr_array(entries, shape=(len(dofs), n_dofs))
 
 
 def unit_loads(
@@ -79,6 +96,9 @@ class StaticFlexibility:
         return out
 
     def _between(self, rows: Array, columns: Array) -> Array:
+        if self.known and isinstance(self._factor, Selective):
+            n = self._floor.n_dofs
+            return self._factor.between(_unit_rows(rows, n), _unit_rows(columns, n))
         out = np.empty((len(rows), len(columns)))
         for part, unit in unit_loads(columns, self._floor.n_dofs):
             out[:, part] = self.solve(unit)[rows]
@@ -90,6 +110,12 @@ class StaticFlexibility:
         if self._factor is None:
             self._factor = self._floor.flexibility()
         return self._factor is not None
+
+    def seen(self, points: SparseMatrix, dofs: Int[Array, " dofs"]) -> Float[Array, "points dofs"]:
+        """Return how far points move under unit forces at some dofs [m/N]."""
+        if self.known and isinstance(self._factor, Selective):
+            return self._factor.between(points, _unit_rows(dofs, self._floor.n_dofs))
+        return self.solve(np.ascontiguousarray(points.T.toarray())).T[:, dofs]
 
     def solve(self, load: Float[Array, "all columns"]) -> Float[Array, "all columns"]:
         """Return the static deflections under loads.
@@ -116,5 +142,5 @@ def point_residual(
     flexibility: StaticFlexibility, modes: Modes, points: SparseMatrix, dofs: Int[Array, " dofs"]
 ) -> Float[Array, "points dofs"]:
     """Return the rows of R that give the response at points to forces at some dofs [m/N]."""
-    exact = flexibility.solve(np.ascontiguousarray(points.T.toarray())).T[:, dofs]
+    exact = flexibility.seen(points, dofs)
     return exact - (modes.seen(points) / modes.omega**2) @ modes.at(dofs).T

@@ -32,6 +32,7 @@ from trundle.study_file.kinds import SectionKind
 __all__ = ["BUILDING", "build", "fields"]
 
 _MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
+_BY_PARTS = 20  # times as many where the building is cut into [parts]
 
 AnyBuilding: TypeAlias = Annotated[
     BuildingSection | ModelSection | GmshSection | MatricesSection | ModesSection,
@@ -69,7 +70,8 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     maker = Maker(section, {}, {})
     meshing = _meshing(draft, section, building, maker)
     found += maker.problems
-    found += _too_fine(building, meshing)
+    most = _MAX_NODES * (_BY_PARTS if "parts" in draft.file.given else 1)
+    found += _too_fine(building, meshing, most)
     if found:
         return draft, found
     floor, found = _floor(building, meshing)
@@ -157,21 +159,21 @@ def _placed(problem: Problem, origins: Origins) -> Problem:
     return replace(problem, place=f"building.{kind}[{entry}]{key}")
 
 
-def _too_fine(building: Building, meshing: Meshing) -> Iterator[Problem]:
+def _too_fine(building: Building, meshing: Meshing, most: int) -> Iterator[Problem]:
     area = sum(slab.area for slab in (*building.slabs, *building.ramps))
     size = meshing.mesh_size
     refined = sum(_more_nodes(one, size, area, len(building.floors)) for one in meshing.refinements)
     nodes = area / size**2 + refined
-    if nodes > _MAX_NODES:
-        alone = refined > _MAX_NODES / 2
+    if nodes > most:
+        alone = refined > most / 2
         yield Problem(
             place="building.mesh_size",
             value=f"{size:g} m"
             + (f", with {refined:.3g} nodes where it is refined" if alone else ""),
-            rule=f"the mesh may have {_MAX_NODES} nodes; this one would have {nodes:.3g}",
+            rule=f"the mesh may have {most} nodes; this one would have {nodes:.3g}",
             remedy="refine less, or shorter lines"
             if alone
-            else f"use {np.ceil(100.0 * np.sqrt(area / _MAX_NODES)) / 100.0:g} m or more",
+            else f"use {np.ceil(100.0 * np.sqrt(area / most)) / 100.0:g} m or more",
         )
 
 

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
 from trundle.criteria import Criterion, find_criterion, shaped
-from trundle.errors import InputError, Problem
+from trundle.criteria.curve import told_apart
+from trundle.errors import Problem
 from trundle.signals import TOP_FREQUENCY
 from trundle.study.plans import Assessment, MethodPlan
 from trundle.study_file.attempt import attempted
-from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import Draft, refer
 from trundle.study_file.fields import (
     Line,
@@ -59,7 +59,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
             read[name] = path.read_bytes()
     if len(read) < len(set(section.files)):
         return draft, found  # a curve of a file that cannot be read is not a second mistake
-    named: list[Criterion] = []
+    named: list[tuple[str, Criterion]] = []
     for i, name in enumerate(section.curves):
         curve, mistakes = attempted(
             f"criteria.curves[{i + 1}]",
@@ -67,9 +67,10 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
             "see 'trundle criteria'",
         )
         found += mistakes
-        named += [curve] if curve is not None else []
+        named += [(name, curve)] if curve is not None else []
+    found += _twice(named)
     assessment = Assessment(
-        criteria=shaped(named, section.shape),
+        criteria=told_apart(shaped((curve for _, curve in named), section.shape)),
         method=section.method,
         percentile=section.percentile,
         averaging=section.averaging,
@@ -78,43 +79,52 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     return replace(draft, assessment=assessment, read={**draft.read, **read}), found
 
 
+def _twice(named: Sequence[tuple[str, Criterion]]) -> Iterator[Problem]:
+    """Give curves that are held against twice: verdicts are kept by their names.
+
+    A curve is found in any case and by other names, so that one is looked for among those found.
+    """
+    given: dict[str, list[str]] = {}
+    for name, curve in named:
+        given.setdefault(curve.name.lower(), []).append(name)
+    for names in given.values():
+        if len(names) > 1:
+            words = dict.fromkeys(repr(name) for name in names)
+            yield Problem(
+                place="criteria.curves",
+                value=f"{' and '.join(words)}, one curve {len(names)} times",
+                rule="each curve is held against once, by a name of its own",
+                remedy="name it once",
+            )
+
+
 def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the section."""
     return {"assessment": draft.assessment, "files": draft.read}
 
 
 def problems(draft: Draft) -> Iterator[Problem]:
-    """Give curves that are named twice, a method that is not there, and steps too long."""
+    """Give a method that is not there, and steps too long."""
     section = draft.file.tables.get("criteria")
     if section is None:
         return
-    for name in sorted({c for c in section.curves if section.curves.count(c) > 1}):
-        yield Problem(
-            place="criteria.curves",
-            value=f"{name!r} {section.curves.count(name)} times",
-            rule="each curve is held against once",
-            remedy="name it once",
-        )
     yield from refer("criteria.method", section.method, draft.file.declared["method"], "method")
-    yield from _assessed_step(draft.file, draft.methods)
+    yield from _assessed_step(draft.assessment, draft.methods)
 
 
-def _assessed_step(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
-    criteria = file.tables.get("criteria")
-    if criteria is None or criteria.method not in methods:
+def _assessed_step(
+    assessment: Assessment | None, methods: Mapping[str, MethodPlan]
+) -> Iterator[Problem]:
+    """Give a step that does not show the last band of a curve, the user's own among them."""
+    if assessment is None or assessment.method not in methods:
         return
-    top = 0.0
-    for name in criteria.curves:
-        try:
-            curve = find_criterion(name)
-        except InputError:
-            continue  # reported where the curves are read, or the user's own
-        top = max(top, min(float(curve.frequencies[-1]), TOP_FREQUENCY))
-    dt = methods[criteria.method].interaction.integration.dt
+    ends = (float(curve.frequencies[-1]) for curve in assessment.criteria)
+    top = min(max(ends, default=0.0), TOP_FREQUENCY)
+    dt = methods[assessment.method].interaction.integration.dt
     if top and dt > 1.0 / (2.5 * top) * (1 + 1e-9):
         yield Problem(
             place="criteria.method",
-            value=f"{criteria.method!r} with dt = {1e3 * dt:g} ms",
+            value=f"{assessment.method!r} with dt = {1e3 * dt:g} ms",
             rule=f"curves that reach {top:g} Hz need a time step of at most {400.0 / top:g} ms",
             remedy="shorten dt, or assess by another method of this study",
         )

@@ -39,6 +39,7 @@ from trundle.study_file.fields import (
     Section,
 )
 from trundle.study_file.kinds import SectionKind
+from trundle.study_file.sections.road import refer_road
 
 __all__ = ["FEATURE", "build", "problems"]
 
@@ -216,8 +217,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
         if section.route is not None:
             yield from refer(f"{place}.route", section.route, declared, "route")
         for j, label in enumerate(section.roads):
-            if not draft.file.has_bad("road"):
-                yield from refer(f"{place}.roads[{j + 1}]", label, set(draft.roads), "road")
+            yield from refer_road(draft, f"{place}.roads[{j + 1}]", label)
         if section.line is None or not draft.drives:
             continue
         crossed, _ = attempted(place, lambda s=section: _crossings(s, draft))

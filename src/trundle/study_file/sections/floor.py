@@ -41,6 +41,7 @@ __all__ = ["FLOOR", "build", "fields", "problems"]
 
 EdgeKind: TypeAlias = Literal["free", "symmetry", "simple", "pinned", "clamped"]
 _MAX_NODES = 100_000  # 600,000 dofs: beyond this a mesh size is more likely a slip
+_BY_PARTS = 20  # times as many where the building is cut into [parts]
 
 
 class ReferenceFloorSection(Section):
@@ -130,7 +131,8 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         else lambda: floor_plan_of(section),
     )
     if plan is not None:
-        found += _mesh_problems(plan, section.mesh_size)
+        most = _MAX_NODES * (_BY_PARTS if "parts" in draft.file.given else 1)
+        found += _mesh_problems(plan, section.mesh_size, most)
     return replace(draft, plan=plan, mesh_size=float(section.mesh_size)), found
 
 
@@ -163,6 +165,8 @@ def fields(draft: Draft) -> dict[str, Any]:
         return {"floor": draft.model, "plan": None, "mesh_size": draft.mesh_size}
     assert plan is not None  # a study is made of sound sections alone
     floor = build_floor(plan, mesh_size=draft.mesh_size)
+    if draft.parting is not None:
+        floor = draft.parting.of(floor)
     return {"floor": floor, "plan": plan, "mesh_size": draft.mesh_size}
 
 
@@ -172,16 +176,16 @@ def problems(draft: Draft) -> Iterator[Problem]:
         yield from _supports(draft.plan)
 
 
-def _mesh_problems(plan: FloorPlan, size: float) -> list[Problem]:
+def _mesh_problems(plan: FloorPlan, size: float, most: int) -> list[Problem]:
     sides = [high - low for low, high in (plan.x_extent, plan.y_extent)]
     nodes = np.prod([side / size + 1 for side in sides])
-    if nodes > _MAX_NODES:
-        smallest = float(np.sqrt(np.prod(sides) / _MAX_NODES))
+    if nodes > most:
+        smallest = float(np.sqrt(np.prod(sides) / most))
         return [
             Problem(
                 place="floor.mesh_size",
                 value=f"{size:g} m",
-                rule=f"the mesh may have {_MAX_NODES} nodes; this one would have {nodes:.3g}",
+                rule=f"the mesh may have {most} nodes; this one would have {nodes:.3g}",
                 remedy=f"use {np.ceil(100 * smallest) / 100:g} m or more",
             )
         ]

@@ -15,7 +15,7 @@ from trundle.machine import Harmonics, MachineForce, RunUp, Strokes, Unbalance
 from trundle.signals import Isolator
 from trundle.simulate.sources.machine import Machine
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, surface_at, unique
+from trundle.study_file.draft import Draft, behind_the_end, surface_at
 from trundle.study_file.fields import (
     AnyTime,
     Flag,
@@ -186,12 +186,13 @@ def _machine(draft: Draft, section: MachineSection, place: str) -> Machine:
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give machines off the floor, and steps that do not show how fast they shake."""
-    named = [s.name for kind in ("walker", "machine") for s in draft.file.items(kind)]
-    yield from unique("walker and machine", named)
     for i, section in draft.file.lists.get("machine", []):
         place = f"machine[{i + 1}]"
         key = "at" if section.feet is None else "feet"
         yield from standing_problems(draft, place, key, section.places, section.on)
+        first = 0.0 if section.blows is None else section.blows.first
+        key = "blows.first" if first > 0.0 else "starts"
+        yield from behind_the_end(draft, f"{place}.{key}", section.starts + first)
         machine = draft.sources.get(section.name)
         if machine is None:
             continue

@@ -27,6 +27,7 @@ from trundle.study_file.fields import (
     Whole,
 )
 from trundle.study_file.kinds import SectionKind
+from trundle.study_file.sections.general import MAX_STEPS
 
 __all__ = ["MAP", "build", "fields"]
 
@@ -42,7 +43,7 @@ _LEVEL_BYTES = 100.0  # of all levels of one run at one place
 class MapSection(Section):
     """What is mapped over the whole floor, by the method that carries the verdict."""
 
-    on: Name | tuple[Name, ...] | None = None
+    on: Name | Annotated[tuple[Name, ...], Field(min_length=1)] | None = None
     axes: Annotated[tuple[Axis, ...], Field(min_length=1)] = ("z",)
     places: Literal["grid", "nodes"] = "grid"
     spacing: PositiveLength | None = None
@@ -74,6 +75,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     if draft.extent is None or draft.assessment is None or draft.band is None:
         return draft, []
     surfaces, found = _surfaces(draft, section.on)
+    method = draft.methods.get(draft.assessment.method)
     if found:
         return draft, found
     checked = _Checked(
@@ -83,8 +85,8 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         mesh_size=draft.mesh_size,
         assessment=draft.assessment,
         drives=draft.drives,
-        method=draft.methods.get(draft.assessment.method),
-        band=draft.band,
+        method=method,
+        band=draft.band if method is None or method.band is None else method.band,
         band_follows_dt=draft.band_follows_dt,
         runs=min(section.runs or _RUNS, file.general.runs),
         n_roads=max(1, len(file.items("road"))),
@@ -99,11 +101,11 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
 def _surfaces(
     draft: Draft, on: str | tuple[str, ...] | None
 ) -> tuple[tuple[Surface, ...], list[Problem]]:
-    """Return the surfaces that are mapped: those named, or all."""
+    """Return the surfaces that are mapped, each once: those named, or all."""
     if on is None:
         return (() if draft.model is None else tuple(draft.model.surfaces.values())), []
     found, problems = list[Surface](), list[Problem]()
-    for name in (on,) if isinstance(on, str) else on:
+    for name in (on,) if isinstance(on, str) else dict.fromkeys(on):
         surface, mistakes = surface_at(draft, "map.on", name)
         problems += mistakes
         found += [] if surface is None else [surface]
@@ -270,6 +272,7 @@ def _sizes(given: _Checked) -> Iterator[Problem]:
 
 
 def _speeds(given: _Checked) -> Iterator[Problem]:
+    """Give speeds whose waves no step follows, and those at which a crossing takes too long."""
     if given.method is None:
         return
     dt = given.method.interaction.integration.dt
@@ -279,20 +282,34 @@ def _speeds(given: _Checked) -> Iterator[Problem]:
     contacts = sum(drive.vehicle.n_contacts for drive in given.drives.values())
     for i, speed in enumerate(given.section.speeds):
         place, value = f"map.speeds[{i + 1}]", f"{in_kmh(speed, 6)}"
-        limit = 0.5 / (speed * dt)
-        if not given.band_follows_dt and given.band.n_max > limit * (1 + 1e-9):
+        if said := _waves(given, 0.5 / (speed * dt)):
             yield Problem(
                 place=place,
                 value=value,
-                rule=f"the step of {1e3 * dt:g} ms can follow waves to {limit:.3g} 1/m at it, and "
-                f"the road's end at {given.band.n_max:g} 1/m",
-                remedy="lower the speed, shorten dt, or set roughness.n_max_follows_dt = true",
+                rule=f"the step of {1e3 * dt:g} ms can follow waves to {0.5 / (speed * dt):.3g} "
+                f"1/m at it, and {said[0]}",
+                remedy=f"lower the speed, shorten dt, or {said[1]}",
             )
-        needed = 8.0 * longest / speed / dt * contacts * given.runs * given.n_roads
-        if needed > _MOST_BYTES:
+        steps = longest / speed / dt
+        needed = 8.0 * steps * contacts * given.runs * given.n_roads
+        if steps > MAX_STEPS or needed > _MOST_BYTES:
             yield Problem(
                 place=place,
                 value=value,
-                rule="contact forces of so long a crossing would not fit in memory",
+                rule="contact forces of so long a crossing would not fit in memory"
+                if needed > _MOST_BYTES
+                else f"a crossing would take {steps:.3g} steps; the limit is {MAX_STEPS}",
                 remedy="raise the speed, or lower map.runs",
             )
+
+
+def _waves(given: _Checked, limit: float) -> tuple[str, str] | None:
+    """Return what waves of the road a limit [1/m] leaves out that it must not, and what helps."""
+    band = given.band
+    if given.band_follows_dt:
+        return None if limit > band.n_min else (
+            f"the road's begin at {band.n_min:g} 1/m", "lower roughness.n_min"
+        )  # fmt: skip
+    return None if band.n_max <= limit * (1 + 1e-9) else (
+        f"the road's end at {band.n_max:g} 1/m", "set roughness.n_max_follows_dt = true"
+    )  # fmt: skip

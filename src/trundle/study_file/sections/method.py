@@ -14,7 +14,7 @@ from trundle.simulate import Coupled, Decoupled, Integration, Modal, Newmark
 from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import Hat, Hermite, ModalModel
 from trundle.structure.elements import Damped
-from trundle.study.plans import Drive, MethodPlan
+from trundle.study.plans import MethodPlan
 from trundle.study_file.attempt import attempt
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import Draft, unique
@@ -79,9 +79,9 @@ def fields(draft: Draft) -> dict[str, Any]:
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give steps and entries that do not suit a record, a vehicle or a route."""
     yield from _time_steps(draft.file, draft.methods)
-    yield from _entries(draft.drives, draft.methods)
-    yield from _vehicle_steps(draft.drives, draft.methods)
-    yield from unique("method", [s.name for s in draft.file.items("method")])
+    yield from _entries(draft)
+    yield from _vehicle_steps(draft)
+    yield from unique((f"{place}.name", name) for place, name in draft.file.names("method"))
     yield from _without_damping(draft)
 
 
@@ -268,13 +268,14 @@ def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[
             )
 
 
-def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
-    for name, drive in drives.items():
-        for method in methods.values():
+def _entries(draft: Draft) -> Iterator[Problem]:
+    for name, drive in draft.drives.items():
+        for method in draft.methods.values():
+            place = draft.file.place_of(method.name, "method")
             length = getattr(method.entry, "length", None)
             if length is not None and length > 0.5 * drive.route.length:
                 yield Problem(
-                    place=f"method {method.name!r}.entry_length",
+                    place=f"{place}.entry_length",
                     value=f"{length:g} m",
                     rule=f"entry and exit must both fit on route {name!r} of "
                     f"{drive.route.length:g} m",
@@ -282,7 +283,7 @@ def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> 
                 )
             if method.entry.lead(drive.vehicle.length) > drive.route.length:
                 yield Problem(
-                    place=f"method {method.name!r}.entry",
+                    place=f"{place}.entry",
                     value="static",
                     rule=f"the whole vehicle must stand on route {name!r}, "
                     f"{drive.route.length:g} m long, at the start; it needs "
@@ -291,17 +292,16 @@ def _entries(drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]) -> 
                 )
 
 
-def _vehicle_steps(
-    drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]
-) -> Iterator[Problem]:
+def _vehicle_steps(draft: Draft) -> Iterator[Problem]:
     """Give the vehicles whose own vibration is too fast for a method's steps."""
-    vehicles = {drive.vehicle.name: drive.vehicle for drive in drives.values()}
-    for method in methods.values():
+    vehicles = {drive.vehicle.name: drive.vehicle for drive in draft.drives.values()}
+    for method in draft.methods.values():
+        place = draft.file.place_of(method.name, "method")
         integration = method.interaction.integration
         for vehicle in vehicles.values() if integration.f_max is not None else ():
             if not vehicle.is_linear:
                 yield Problem(
-                    place=f"method {method.name!r}.integration",
+                    place=f"{place}.integration",
                     value="modal",
                     rule=f"vehicle {vehicle.name!r} is not linear (friction, stops, or lifting "
                     "off), and modal steps are of linear vehicles",
@@ -309,7 +309,7 @@ def _vehicle_steps(
                 )
             if problem := step_problem(vehicle, integration.dt):
                 yield Problem(
-                    place=f"method {method.name!r}.dt",
+                    place=f"{place}.dt",
                     value=f"{1e3 * integration.dt:g} ms",
                     rule=problem.partition(": shorten")[0],
                     remedy=f"shorten dt to {1e3 * longest_step(vehicle):.2g} ms, or see whether a "

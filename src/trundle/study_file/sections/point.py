@@ -130,8 +130,11 @@ def problems(draft: Draft) -> Iterator[Problem]:
                 rule=f"a point must lie on a slab, and {surface.name!r} has none there",
                 remedy="move it off the opening, or name another storey: on = ...",
             )
-    names = (named(s, axis) for s in draft.file.items("point") for axis in s.axes)
-    yield from unique("point", names)
+    yield from unique(
+        (f"point[{i + 1}]", named(section, axis))
+        for i, section in draft.file.lists.get("point", [])
+        for axis in section.axes
+    )
 
 
 def _level(draft: Draft, place: str, section: PointSection) -> Iterator[Problem]:

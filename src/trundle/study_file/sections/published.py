@@ -18,7 +18,7 @@ from trundle.study_file.fields import (
     Speed,
 )
 from trundle.study_file.kinds import SectionKind
-from trundle.study_file.sections.road import road_label
+from trundle.study_file.sections.road import refer_road
 
 __all__ = ["NOTE", "PRINTED", "PRINTED_BOUND", "PUBLICATION", "fields", "problems"]
 
@@ -81,18 +81,15 @@ def fields(draft: Draft) -> dict[str, Any]:
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give values of a case, a road or a method that is not there."""
     file = draft.file
-    names = {
-        "case": file.declared["route"] | file.declared["traffic"],
-        "road": {road_label(s) for s in file.items("road")},
-        "method": file.declared["method"],
-    }
+    names = {"case": draft.acting | file.declared["traffic"], "method": file.declared["method"]}
     for kind, keys in {
         "printed": ("case", "road", "method"),
         "printed_bound": ("road", "method"),
     }.items():
         for i, section in file.lists.get(kind, []):
             for key in keys:
-                if key == "road" and file.has_bad("road"):
-                    continue  # a road with mistakes has no label to compare with
-                place = f"{kind}[{i + 1}].{key}"
-                yield from refer(place, getattr(section, key), names[key], key)
+                place, value = f"{kind}[{i + 1}].{key}", getattr(section, key)
+                if key == "road":
+                    yield from refer_road(draft, place, value)
+                else:
+                    yield from refer(place, value, names[key], key)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import PurePath
 from typing import Annotated, Any, Literal, Self
@@ -14,9 +14,8 @@ from trundle._words import in_kmh
 from trundle.errors import FitnessWarning, Problem
 from trundle.profiles import ProfileOptions, read_profile
 from trundle.road import Profile, Road, RoadClass, RoadSpectrum, RoughnessBand, flat_floor
-from trundle.study.plans import Drive, MethodPlan
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, unique
+from trundle.study_file.draft import Draft, refer, unique
 from trundle.study_file.fields import (
     Flag,
     Length,
@@ -31,7 +30,16 @@ from trundle.study_file.fields import (
 from trundle.study_file.given_roads import given_road_problems
 from trundle.study_file.kinds import SectionKind
 
-__all__ = ["NO_ROAD", "ROAD", "ROUGHNESS", "build", "fields", "problems", "road_label"]
+__all__ = [
+    "NO_ROAD",
+    "ROAD",
+    "ROUGHNESS",
+    "build",
+    "fields",
+    "problems",
+    "refer_road",
+    "road_label",
+]
 
 
 NO_ROAD = "no road"
@@ -121,9 +129,9 @@ def _with_band(draft: Draft) -> tuple[Draft, list[Problem]]:
 def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     """Return the draft with its waves and roads."""
     draft, found = _with_band(draft)
-    if "road" not in draft.file.given:  # people and machines need none
-        return replace(draft, roads={NO_ROAD: Profile.smooth()}), found
     roads: dict[str, Road] = {}
+    if not draft.file.given & {"road", "route", "vehicle"}:  # people and machines need none
+        roads[NO_ROAD] = Profile.smooth()
     for i, section in draft.file.lists.get("road", []):
         key = next(key for key in _WAYS if getattr(section, key))
         place = f"road[{i + 1}].{key.rstrip('_')}"
@@ -144,14 +152,21 @@ def fields(draft: Draft) -> dict[str, Any]:
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give waves that no step can follow, roads of one name, and surveys that do not reach."""
+    labelled = [(f"road[{i + 1}]", road_label(s)) for i, s in draft.file.lists.get("road", [])]
     if draft.band is not None:
-        yield from _roughness(
-            draft.drives, draft.methods, draft.band, follows_dt=draft.band_follows_dt
-        )
-        sections = draft.file.lists.get("road", [])
-        places = {road_label(s): f"road[{i + 1}]" for i, s in sections}
-        yield from given_road_problems(draft, places)
-    yield from unique("road", [road_label(s) for s in draft.file.items("road")])
+        yield from _roughness(draft, draft.band)
+        yield from given_road_problems(draft, {label: place for place, label in labelled})
+    yield from unique(labelled)
+
+
+def refer_road(draft: Draft, place: str, label: str) -> Iterator[Problem]:
+    """Give the problem of a label that no road of the study has, if so.
+
+    A road that cannot be made of its file has a label; one whose section is unsound may have any.
+    """
+    labels = {road_label(s) for s in draft.file.items("road")} or set(draft.roads)
+    if labels and not draft.file.has_bad("road"):
+        yield from refer(place, label, labels, "road")
 
 
 def road_of(section: RoadSection) -> Road:
@@ -207,31 +222,28 @@ def _measured(
     return replace(draft, read=kept, told=(*draft.told, *said)), road, found
 
 
-def _roughness(
-    drives: Mapping[str, Drive],
-    methods: Mapping[str, MethodPlan],
-    band: RoughnessBand,
-    *,
-    follows_dt: bool,
-) -> Iterator[Problem]:
-    for name, drive in drives.items():
+def _roughness(draft: Draft, band: RoughnessBand) -> Iterator[Problem]:
+    """Give roads whose waves are too short for a method's steps at a route's speed."""
+    for name, drive in draft.drives.items():
         speed = drive.route.law.fastest
-        for method in methods.values():
+        for method in draft.methods.values():
             dt = method.interaction.integration.dt
             limit = 0.5 / (speed * dt)
-            if follows_dt and limit <= band.n_min:
+            waves, place = method.band or band, draft.file.place_of(method.name, "method")
+            if draft.band_follows_dt and limit <= waves.n_min:
                 yield Problem(
-                    place=f"method {method.name!r}.dt",
+                    place=f"{place}.dt",
                     value=f"{1e3 * dt:g} ms",
                     rule=f"at {in_kmh(speed, 6)} on route {name!r} this step follows waves to "
-                    f"{limit:.3g} 1/m only, and the road's begin at {band.n_min:g} 1/m",
+                    f"{limit:.3g} 1/m only, and the road's begin at {waves.n_min:g} 1/m",
                     remedy="shorten dt, or lower n_min or the speed",
                 )
-            elif not follows_dt and (method.band or band).n_max > limit * (1 + 1e-9):
+            elif not draft.band_follows_dt and waves.n_max > limit * (1 + 1e-9):
+                own = waves.n_max != band.n_max
                 yield Problem(
-                    place="roughness.n_max",
-                    value=f"{band.n_max:g} 1/m",
+                    place=f"{place}.n_max" if own else "roughness.n_max",
+                    value=f"{waves.n_max:g} 1/m",
                     rule=f"method {method.name!r} on route {name!r} can follow waves to "
                     f"{limit:.3g} 1/m (dt = {1e3 * dt:g} ms)",
-                    remedy="shorten dt, lower n_max, or set n_max_follows_dt = true",
+                    remedy="shorten dt, lower n_max, or set roughness.n_max_follows_dt = true",
                 )

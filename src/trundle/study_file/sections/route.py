@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Annotated, Any, Self, TypeAlias
 
@@ -14,11 +14,12 @@ from trundle.errors import Problem
 from trundle.route import ConstantSpeed, Route, SpeedLaw, SpeedOverTime, Steering
 from trundle.structure import FloorPlan
 from trundle.study.model import Extent
-from trundle.study.plans import Case, Drive, MethodPlan
+from trundle.study.plans import Case, Drive
 from trundle.study_file.attempt import attempted
 from trundle.study_file.document import StudyFile
 from trundle.study_file.draft import (
     Draft,
+    behind_the_end,
     covered,
     is_off,
     refer,
@@ -47,6 +48,7 @@ from trundle.study_file.way_checks import off_slabs, wheels_off
 __all__ = ["ROUTE", "TRAFFIC", "build", "fields", "problems"]
 
 _EDGE = 1e-6  # m
+_SPEEDS = ("speed", "speeds", "speeds_over_time")
 _NOWHERE = ((0.0, 0.0), (1.0, 0.0))  # of a route that is drawn, until its drawing is read
 
 
@@ -77,7 +79,7 @@ class RouteSection(Section):
     @model_validator(mode="after")
     def _check_path(self) -> Self:
         rule = ""
-        given = [k for k in ("speed", "speeds", "speeds_over_time") if getattr(self, k) is not None]
+        given = [k for k in _SPEEDS if getattr(self, k) is not None]
         if ("path" in self.model_fields_set) == (self.drawn is not None):
             rule = "a route has a path, or is drawn on a layer of the building's drawing"
         elif len(given) != 1:
@@ -209,18 +211,17 @@ def problems(draft: Draft) -> Iterator[Problem]:
         yield from _off_the_floor(draft, draft.extent)
     if draft.plan is not None:
         yield from _on_held_edges(draft.file, draft.plan)
-    yield from _short_routes(draft.drives, draft.methods)
-    named = [s.name for kind in ("route", "traffic") for s in draft.file.items(kind)]
-    named += draft.sources
-    yield from unique("route and traffic", named)
+    yield from _short_routes(draft)
+    yield from _not_yet(draft)
+    named = draft.file.names("route", "traffic", *draft.file.shaking)
+    yield from unique((f"{place}.name", name) for place, name in named)
 
 
 def _traffic(draft: Draft) -> Iterator[Problem]:
     for i, section in draft.file.lists.get("traffic", []):
         for j, route in enumerate(section.routes):
             place = f"traffic[{i + 1}].routes[{j + 1}]"
-            known = draft.file.declared["route"] | set(draft.sources)
-            yield from refer(place, route, known, "route")
+            yield from refer(place, route, draft.acting, "route")
         for name, times in _times_of(section).items():
             if len(set(times)) < len(times):
                 yield Problem(
@@ -236,6 +237,19 @@ def _traffic(draft: Draft) -> Iterator[Problem]:
                     rule="people and machines are there once; their own keys say when and how many",
                     remedy="name it once",
                 )
+        yield from _late(draft, f"traffic[{i + 1}]", section)
+
+
+def _late(draft: Draft, place: str, section: TrafficSection) -> Iterator[Problem]:
+    """Give the first of a section that departs when the record has ended."""
+    for j, (name, depart) in enumerate(zip(section.routes, section.times, strict=True), start=1):
+        source = draft.sources.get(name)  # people and machines may begin later by themselves
+        own = getattr(source, "depart", getattr(source, "starts", 0.0))
+        key = "headway" if section.departures is None else f"departures[{j}]"
+        late = list(behind_the_end(draft, f"{place}.{key}", depart + own)) if depart else []
+        if late:
+            yield from late
+            return
 
 
 def _times_of(section: TrafficSection) -> dict[str, list[float]]:
@@ -271,19 +285,31 @@ def _on_held_edges(file: StudyFile, plan: FloorPlan) -> Iterator[Problem]:
                 )
 
 
-def _short_routes(
-    drives: Mapping[str, Drive], methods: Mapping[str, MethodPlan]
-) -> Iterator[Problem]:
+def _short_routes(draft: Draft) -> Iterator[Problem]:
     """Give routes that a wheel is on for less than two steps."""
-    for name, drive in drives.items():
+    for name, drive in draft.drives.items():
         time = drive.route.law.time_to(drive.route.length)
-        for method in methods.values():
+        for method in draft.methods.values():
             dt = method.interaction.integration.dt
             if time < 2.0 * dt:
                 yield Problem(
-                    place=f"route {name!r}.path",
+                    place=f"{draft.file.place_of(name, 'route')}.path",
                     value=f"{drive.route.length:g} m",
                     rule=f"a wheel is on it for {1e3 * time:.3g} ms, and method {method.name!r} "
                     f"looks every {1e3 * dt:g} ms",
                     remedy="lengthen the route; 'trundle check' draws the plan",
                 )
+
+
+def _not_yet(draft: Draft) -> Iterator[Problem]:
+    """Give vehicles that wait before the floor until the record has ended."""
+    for i, section in draft.file.lists.get("route", []):
+        drive = draft.drives.get(section.name)
+        if drive is None or any(
+            method.entry.lead(drive.vehicle.length) > 0.0 for method in draft.methods.values()
+        ):  # who stands on it at first loads it
+            continue
+        key = next(k for k in _SPEEDS if getattr(section, k) is not None)
+        yield from behind_the_end(
+            draft, f"route[{i + 1}].{key}", float(drive.route.law.time_to(_EDGE))
+        )

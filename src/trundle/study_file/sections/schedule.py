@@ -102,7 +102,8 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     schedules: dict[str, Schedule] = {}
     for name, some in streams.items():
         schedule, mistakes = attempted(
-            "schedule", lambda n=name, s=some: Schedule(name=n, streams=tuple(s))
+            draft.file.place_of(name, "schedule"),
+            lambda n=name, s=some: Schedule(name=n, streams=tuple(s)),
         )
         found += mistakes if some else []
         if schedule is not None:
@@ -130,32 +131,41 @@ def fields(draft: Draft) -> dict[str, Any]:
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give routes that there are not, what never ends, and a day that nothing is held against."""
-    lasting = {n for n, s in draft.sources.items() if not np.isfinite(getattr(s, "lasts", 0.0))}
-    known = draft.file.declared["route"] | set(draft.sources)
     for i, section in draft.file.lists.get("schedule", []):
         place = f"schedule[{i + 1}]"
-        named = {f"{place}.route": section.route} if section.route else {}
-        named |= {f"{place}.mix.{name}": name for name in section.mix or {}}
-        for where, name in named.items():
-            yield from refer(where, name, known, "route")
-            if name in lasting:
-                yield Problem(
-                    place=where,
-                    value=repr(name),
-                    rule="a machine that never stops is no event of a day",
-                    remedy="give it lasts, or put it into [[traffic]]",
-                )
+        if section.route:
+            yield from _driven(draft, f"{place}.route", section.route)
+        for name in section.mix or {}:
+            yield from _driven(draft, f"{place}.mix.{name}", name)
     for name, schedule in draft.schedules.items():
-        of_files = set(schedule.routes) - known - _written(draft)
-        for route in sorted(of_files):
-            yield from refer(f"schedule {name!r}.timetable", route, known, "route")
+        for route in sorted(set(schedule.routes) - _written(draft)):
+            yield from _driven(draft, _timetable_of(draft, name), route)
         if draft.assessment is None and "criteria" not in draft.file.given:
             yield Problem(
-                place="schedule",
+                place=draft.file.place_of(name, "schedule"),
                 value=repr(name),
                 rule="a day is held against limits, and this study has none",
                 remedy="add [criteria]",
             )
+
+
+def _driven(draft: Draft, place: str, name: str) -> Iterator[Problem]:
+    """Give a name that nothing has which could be an event of a day."""
+    yield from refer(place, name, draft.acting, "route")
+    if not np.isfinite(getattr(draft.sources.get(name), "lasts", 0.0)):
+        yield Problem(
+            place=place,
+            value=repr(name),
+            rule="a machine that never stops is no event of a day",
+            remedy="give it lasts, or put it into [[traffic]]",
+        )
+
+
+def _timetable_of(draft: Draft, name: str) -> str:
+    """Return where a schedule names a timetable."""
+    sections = draft.file.lists.get("schedule", [])
+    there = (i for i, section in sections if section.name == name and section.timetable)
+    return f"schedule[{next(there) + 1}].timetable"
 
 
 def _written(draft: Draft) -> set[str]:

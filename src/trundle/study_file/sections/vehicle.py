@@ -28,6 +28,7 @@ from trundle.study_file.fields import (
     Whole,
 )
 from trundle.study_file.kinds import SectionKind
+from trundle.study_file.lines import shown_key
 from trundle.study_file.vehicle_changes import ChangedSection
 from trundle.vehicle import (
     VEHICLES,
@@ -192,7 +193,9 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     vehicles: dict[str, Vehicle] = {}
     found: list[Problem] = []
     for name, section in draft.file.vehicles.items():
-        vehicle, mistakes = attempted(f"vehicle.{name}", lambda n=name, s=section: vehicle_of(n, s))
+        vehicle, mistakes = attempted(
+            f"vehicle.{shown_key(name)}", lambda n=name, s=section: vehicle_of(n, s)
+        )
         found += mistakes
         if vehicle is not None:
             vehicles[name] = vehicle

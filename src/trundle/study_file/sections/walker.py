@@ -15,7 +15,7 @@ from trundle.footfall import FOOTFALLS, footfall_load
 from trundle.route import ConstantSpeed, Route
 from trundle.simulate.sources.walker import Gait, StandsAt, Walker
 from trundle.study_file.attempt import attempted
-from trundle.study_file.draft import Draft, surface_at
+from trundle.study_file.draft import Draft, behind_the_end, surface_at
 from trundle.study_file.fields import (
     AnyTime,
     Flag,
@@ -130,6 +130,7 @@ def problems(draft: Draft) -> Iterator[Problem]:
             yield from standing_problems(draft, place, "at", [section.at], section.on)
         else:
             yield from way_problems(draft, place, section.path, section.on)
+        yield from behind_the_end(draft, f"{place}.depart", section.depart)
         walker = draft.sources.get(section.name)
         if walker is None:
             continue

@@ -1,0 +1,7 @@
+"""Find the modes of large structures by their parts."""
+
+from trundle.structure.superelements.assembly import Joined
+from trundle.structure.superelements.cuts import Cuts
+from trundle.structure.superelements.whole import PartedStructure, Parting
+
+__all__ = ["Cuts", "Joined", "PartedStructure", "Parting"]

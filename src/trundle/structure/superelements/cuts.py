@@ -1,0 +1,158 @@
+"""Cut a structure into pieces: which piece each element belongs to.
+
+Pieces meet at nodes, never inside an element. An element that lies in a plane of the cut, such as
+a beam or a column between two units, belongs to the pieces on both sides by equal shares, so that
+equal units stay equal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from jaxtyping import Float, Int
+
+from trundle._checks import frozen_array, set_frozen
+from trundle._typing import Array
+from trundle.errors import InputError
+from trundle.structure.elements.protocol import GROUND, Elements
+
+__all__ = ["Cuts", "Share", "shares_in_halves", "shares_of"]
+
+_ON_PLANE = 1e-3  # m, within which an element lies in a plane of the cut
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Cuts:
+    """Hold the planes by which a structure is cut, across x, y and z [m].
+
+    Attributes
+    ----------
+    x, y, z : ndarray of float
+        Where they lie, rising; none, unless given.
+    """
+
+    x: Float[Array, " across_x"] = field(default_factory=lambda: np.zeros(0))
+    y: Float[Array, " across_y"] = field(default_factory=lambda: np.zeros(0))
+    z: Float[Array, " across_z"] = field(default_factory=lambda: np.zeros(0))
+
+    def __post_init__(self) -> None:
+        """Check that they rise."""
+        for name in "xyz":
+            values = frozen_array(name, getattr(self, name), shape=(None,))
+            if np.any(np.diff(values) <= 0.0):
+                raise InputError(f"cuts across {name} must rise; got {values.tolist()}")
+            set_frozen(self, **{name: values})
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.x) + len(self.y) + len(self.z)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Share:
+    """Hold which elements of one group belong to which piece, and by how much.
+
+    Attributes
+    ----------
+    element, piece : ndarray of int, shape (n_shares,)
+        Numbers of both; an element that two pieces share stands twice.
+    weight : ndarray of float, shape (n_shares,)
+        The share; those of an element sum to 1.
+    """
+
+    element: Int[Array, " shares"]
+    piece: Int[Array, " shares"]
+    weight: Float[Array, " shares"]
+
+
+def shares_of(
+    groups: Sequence[Elements], nodes: Float[Array, "nodes 3"], cuts: Cuts
+) -> tuple[Share, ...]:
+    """Return the shares of every group's elements in the pieces between planes.
+
+    Pieces are numbered from 0 without gaps, z changing fastest. Planes outside are passed over.
+    """
+    ends = nodes.min(axis=0) + _ON_PLANE, nodes.max(axis=0) - _ON_PLANE
+    planes = [
+        at[(at > low) & (at < high)]
+        for at, low, high in zip((cuts.x, cuts.y, cuts.z), *ends, strict=True)
+    ]
+    found = [_in_cells(nodes, group.connectivity, planes) for group in groups]
+    used = np.unique(np.concatenate([share.piece for share in found]))
+    return tuple(
+        Share(
+            element=share.element,
+            piece=np.searchsorted(used, share.piece),
+            weight=share.weight,
+        )
+        for share in found
+    )
+
+
+def _in_cells(nodes: Array, connectivity: Array, planes: Sequence[Array]) -> Share:
+    """Return the shares of some elements in cells numbered with gaps."""
+    element = np.arange(len(connectivity))
+    cell = np.zeros(len(connectivity), dtype=np.intp)
+    weight = np.ones(len(connectivity))
+    there = (connectivity != GROUND)[..., None]
+    xyz = nodes[connectivity]
+    low = np.where(there, xyz, np.inf).min(axis=1)
+    high = np.where(there, xyz, -np.inf).max(axis=1)
+    for axis, at in enumerate(planes):
+        bottom = np.searchsorted(at, 0.5 * (low + high)[element, axis] - _ON_PLANE)
+        within = np.searchsorted(at, high[element, axis] - _ON_PLANE) != np.searchsorted(
+            at, low[element, axis] + _ON_PLANE
+        )
+        flat = (high - low)[element, axis] <= 2.0 * _ON_PLANE
+        shared = flat & within
+        cell = cell * (len(at) + 1) + bottom
+        weight = np.where(shared, 0.5 * weight, weight)
+        # the other half lies on the far side of the plane
+        element = np.concatenate([element, element[shared]])
+        weight = np.concatenate([weight, weight[shared]])
+        cell = np.concatenate([cell, cell[shared] + 1])
+    return Share(element=element, piece=cell, weight=weight)
+
+
+def shares_in_halves(
+    groups: Sequence[Elements], nodes: Float[Array, "nodes 3"], *, largest: int
+) -> tuple[Share, ...]:
+    """Return the shares of pieces found by halving what is longest, over and over.
+
+    Parameters
+    ----------
+    groups, nodes
+        The structure.
+    largest : int
+        Number of nodes that a piece may have, about.
+    """
+    middles = [_middles(nodes, group.connectivity) for group in groups]
+    everywhere = np.concatenate(middles)
+    label = np.zeros(len(everywhere), dtype=np.intp)
+    parts, next_label = [np.arange(len(everywhere))], 1
+    allowed = max(1, int(largest * len(everywhere) / max(1, len(nodes))))
+    while parts:
+        part = parts.pop()
+        if len(part) <= allowed:
+            continue
+        axis = int(np.argmax(np.ptp(everywhere[part], axis=0)))
+        along = everywhere[part, axis]
+        above = along > np.median(along)
+        if not above.any():
+            continue
+        label[part[above]] = next_label
+        next_label += 1
+        parts += [part[above], part[~above]]
+    ends = np.cumsum([len(one) for one in middles])[:-1]
+    return tuple(
+        Share(element=np.arange(len(one)), piece=one, weight=np.ones(len(one)))
+        for one in np.split(label, ends)
+    )
+
+
+def _middles(nodes: Array, connectivity: Array) -> Array:
+    """Return the middle of each element's nodes."""
+    there = (connectivity != GROUND)[..., None]
+    return np.where(there, nodes[connectivity], 0.0).sum(axis=1) / there.sum(axis=1)

@@ -1,0 +1,84 @@
+"""Tell static deflections of a structure by its parts, without a factor of the whole.
+
+A part deflects under what stands on it while its boundary is held, and follows its boundary:
+
+    K^-1 = K_ii^-1 + Psi K_seams^-1 Psi^T,
+
+so that a question about few places, such as the dofs under a route, costs solutions within the
+parts on which they lie, and one with all seams.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float
+from scipy import sparse
+
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import Factor, HalfSolve, factorise
+from trundle.structure.superelements.assembly import Joined
+from trundle.structure.superelements.reduction import Sorted
+
+__all__ = ["PartedFlexibility"]
+
+
+class PartedFlexibility:
+    """Solve for static deflections part by part; long seams deflect as their shapes do."""
+
+    n_negative = 0
+
+    def __init__(self, joined: Joined, pieces: Sorted) -> None:
+        """`pieces` are those that `joined` was reduced from."""
+        self._joined, self._pieces = joined, pieces
+        self._inner: dict[int, Factor] = {}
+
+    @cached_property
+    def _seams(self) -> Factor:
+        return factorise(self._joined.pencil.seam_stiffness)
+
+    def _inside(self, kind: int) -> Factor:
+        """Return the factor of a distinct part that is held at its boundary."""
+        if kind not in self._inner:
+            inner = self._joined.parts[kind].interior
+            stiffness = sparse.csc_array(self._pieces.distinct[kind].stiffness)
+            self._inner[kind] = factorise(stiffness[:, inner][inner].tocsc())
+        return self._inner[kind]
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """Return the deflection of all dofs under loads, (n_dofs,) or (n_dofs, n_loads)."""
+        load = right_hand_side.reshape(len(right_hand_side), -1)
+        joined, out = self._joined, np.zeros(load.shape)
+        pushed = np.stack([joined.forces(one) for one in load.T], axis=1)
+        moved = np.zeros_like(pushed)
+        n = joined.pencil.n_modes
+        moved[n:] = self._seams.solve(pushed[n:])
+        out = joined.expanded(moved)
+        for own in joined.placed:
+            rows = own.dofs[joined.parts[own.kind].interior]
+            if np.any(load[rows]):
+                sign = own.sign[joined.parts[own.kind].interior][:, None]
+                out[rows] += sign * self._inside(own.kind).solve(sign * load[rows])
+        return out.reshape(right_hand_side.shape)
+
+    def between(self, rows: SparseMatrix, columns: SparseMatrix) -> Float[Array, "rows columns"]:
+        """Return ``rows K^-1 columns^T``; both are rows of weights over all dofs."""
+        joined = self._joined
+        seen, pushed = joined.seams_seen(rows), joined.seams_seen(columns)
+        out = seen @ self._seams.solve(np.ascontiguousarray(pushed.T))
+        by_row, by_column = sparse.csc_array(rows), sparse.csc_array(columns)
+        for own in joined.placed:
+            inner = joined.parts[own.kind].interior
+            mine, theirs = by_row[:, own.dofs[inner]], by_column[:, own.dofs[inner]]
+            if mine.nnz and theirs.nnz:
+                sign = own.sign[inner]
+                loads = np.flatnonzero(np.diff(sparse.csr_array(theirs).indptr))
+                full = sparse.csr_array(theirs)[loads].toarray().T * sign[:, None]
+                moved = self._inside(own.kind).solve(full)
+                out[:, loads] += (mine @ sparse.diags_array(sign)) @ moved
+        return out
+
+    def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
+        """Return nothing: there is no factor of the whole."""
+        return None

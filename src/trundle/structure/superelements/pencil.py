@@ -1,0 +1,249 @@
+"""Hold the reduced matrices of a whole structure by their pieces, and factorise them at shifts.
+
+Coordinates are the own modes of every piece, piece by piece, then those of all seams. A piece's
+modes meet the seams of that piece alone, and by mass alone (`dynamics.superelement`). At a shift
+``s = omega^2`` they are eliminated by a division each,
+
+    S(s) = K_seams - s M_seams - sum over pieces of  P^T diag(s^2 / (omega_i^2 - s)) P,
+
+and only S, one dense block a piece, is factorised as a sparse matrix. Its negative eigenvalues and
+the modes of pieces below s are together those of the structure below s (Sylvester, Haynsworth).
+Equal pieces share P and what it gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Float, Int
+from scipy import sparse
+
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import Factor, HalfSolve, factorise
+from trundle.errors import UnrestrainedModeError
+
+__all__ = ["PieceCoordinates", "ReducedPencil", "ReducedPiece"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ReducedPiece:
+    """Hold the matrices of pieces that are equal, with equal seams.
+
+    Attributes
+    ----------
+    omega : ndarray of float, shape (n_modes,)
+        Circular frequencies of its own modes [rad/s].
+    coupling : ndarray of float, shape (n_modes, n_seams)
+        P.
+    stiffness, mass : ndarray of float, shape (n_seams, n_seams)
+        By the coordinates of its seams.
+    """
+
+    omega: Float[Array, " modes"]
+    coupling: Float[Array, "modes seams"]
+    stiffness: Float[Array, "seams seams"]
+    mass: Float[Array, "seams seams"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PieceCoordinates:
+    """Say which coordinates of the structure are a piece's.
+
+    Attributes
+    ----------
+    kind : int
+        Which of the distinct pieces it is.
+    first : int
+        Coordinate of its first own mode.
+    seams : ndarray of int, shape (n_seams,)
+        Coordinates of its seams, counted from the first of all seams.
+    """
+
+    kind: int
+    first: int
+    seams: Int[Array, " seams"]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Product:
+    """A reduced matrix that can be multiplied with, ``diag`` of modes and all that is at seams."""
+
+    pencil: ReducedPencil
+    of_mass: bool
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.pencil.n_coordinates, self.pencil.n_coordinates
+
+    def __matmul__(self, block: Array) -> Array:
+        """Return the product with a vector or a block of them."""
+        pencil = self.pencil
+        n = pencil.n_modes
+        if not self.of_mass:
+            scale = pencil.omega**2
+            scale = scale if block.ndim == 1 else scale[:, None]
+            return np.concatenate([scale * block[:n], pencil.seam_stiffness @ block[n:]])
+        out = np.concatenate([block[:n], pencil.seam_mass @ block[n:]])
+        for one in pencil.pieces:
+            coupling = pencil.kinds[one.kind].coupling
+            own, seams = slice(one.first, one.first + len(coupling)), n + one.seams
+            out[own] += coupling @ block[seams]
+            out[seams] += coupling.T @ block[own]
+        return out
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ReducedPencil:
+    """Hold stiffness and mass of a whole structure by its reduced pieces.
+
+    Attributes
+    ----------
+    kinds : tuple of ReducedPiece
+        The distinct ones.
+    pieces : tuple of PieceCoordinates
+        All pieces.
+    n_seams : int
+        Number of coordinates of all seams.
+    """
+
+    kinds: tuple[ReducedPiece, ...]
+    pieces: tuple[PieceCoordinates, ...]
+    n_seams: int
+
+    @cached_property
+    def n_modes(self) -> int:
+        """Number of own modes of all pieces."""
+        return sum(len(self.kinds[one.kind].omega) for one in self.pieces)
+
+    @property
+    def n_coordinates(self) -> int:
+        """Number of all coordinates."""
+        return self.n_modes + self.n_seams
+
+    @cached_property
+    def omega(self) -> Float[Array, " modes"]:
+        """Circular frequencies of all pieces' own modes, piece by piece [rad/s]."""
+        return np.concatenate([self.kinds[one.kind].omega for one in self.pieces])
+
+    @property
+    def mass(self) -> _Product:
+        """What multiplies with the reduced mass."""
+        return _Product(pencil=self, of_mass=True)
+
+    @property
+    def stiffness(self) -> _Product:
+        """What multiplies with the reduced stiffness."""
+        return _Product(pencil=self, of_mass=False)
+
+    @cached_property
+    def _pattern(self) -> SparseMatrix:
+        """Where seams couple: a number for each stored entry."""
+        couples = [
+            sparse.coo_array(
+                (
+                    np.ones(len(one.seams) ** 2, dtype=np.int8),
+                    (
+                        np.repeat(one.seams, len(one.seams)),
+                        np.tile(one.seams, len(one.seams)),
+                    ),
+                ),
+                shape=(self.n_seams, self.n_seams),
+            ).tocsc()
+            for one in self.pieces
+        ]
+        pattern = couples[0]
+        for other in couples[1:]:
+            pattern = pattern + other
+        pattern = sparse.csc_array(pattern)
+        pattern.sort_indices()
+        numbers = np.arange(pattern.nnz, dtype=np.int32)
+        return sparse.csc_array((numbers, pattern.indices, pattern.indptr), shape=pattern.shape)
+
+    @cached_property
+    def _places(self) -> tuple[Int[Array, "seams seams"], ...]:
+        """Where the entries of each piece's dense block are stored."""
+        pattern = self._pattern
+        shown = sparse.csc_array((pattern.data + 1, pattern.indices, pattern.indptr), pattern.shape)
+        return tuple(shown[:, one.seams][one.seams].toarray() - 1 for one in self.pieces)
+
+    def _at_seams(self, blocks: Sequence[Array]) -> SparseMatrix:
+        """Add up a dense block a distinct piece over all pieces."""
+        pattern = self._pattern
+        data = np.zeros(pattern.nnz)
+        for one, places in zip(self.pieces, self._places, strict=True):
+            data[places] += blocks[one.kind]
+        return sparse.csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
+
+    @cached_property
+    def seam_stiffness(self) -> SparseMatrix:
+        """Stiffness between seams."""
+        return self._at_seams([kind.stiffness for kind in self.kinds])
+
+    @cached_property
+    def seam_mass(self) -> SparseMatrix:
+        """Mass between seams."""
+        return self._at_seams([kind.mass for kind in self.kinds])
+
+    def factorise(self, shift: float) -> Factor:
+        """Factorise ``K - shift M``.
+
+        Raises
+        ------
+        UnrestrainedModeError
+            The shift is a natural frequency of the structure, or of one of its pieces.
+        """
+        below = self.omega**2 - shift
+        if np.any(np.abs(below) <= _CLOSE * np.maximum(self.omega**2, abs(shift))):
+            raise UnrestrainedModeError("the shift is a natural frequency of a piece")
+        blocks = []
+        for kind in self.kinds:
+            weight = shift**2 / (kind.omega**2 - shift)
+            full = kind.stiffness - shift * kind.mass
+            full -= kind.coupling.T @ (weight[:, None] * kind.coupling)
+            blocks.append(full)
+        return _ShiftedFactor(pencil=self, shift=shift, seams=factorise(self._at_seams(blocks)))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _ShiftedFactor:
+    """A factorised ``K - shift M``."""
+
+    pencil: ReducedPencil
+    shift: float
+    seams: Factor
+
+    @property
+    def n_negative(self) -> int:
+        """Number of eigenvalues below the shift."""
+        own = np.count_nonzero(self.pencil.omega**2 < self.shift)
+        return int(own) + self.seams.n_negative
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """Return ``(K - shift M)^-1 b``."""
+        pencil, n = self.pencil, self.pencil.n_modes
+        b = right_hand_side if right_hand_side.ndim == 2 else right_hand_side[:, None]
+        gap = (pencil.omega**2 - self.shift)[:, None]
+        out = np.empty_like(b, dtype=float)
+        own, seams = b[:n] / gap, b[n:].copy()
+        for one in pencil.pieces:
+            coupling = pencil.kinds[one.kind].coupling
+            mine = own[one.first : one.first + len(coupling)]
+            seams[one.seams] += self.shift * (coupling.T @ mine)
+        out[n:] = self.seams.solve(seams)
+        for one in pencil.pieces:
+            coupling = pencil.kinds[one.kind].coupling
+            mine = slice(one.first, one.first + len(coupling))
+            moved = self.shift * (coupling @ out[n + one.seams])
+            out[mine] = own[mine] + moved / gap[mine]
+        return out.reshape(right_hand_side.shape)
+
+    def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
+        """Return nothing: there is no factor of the whole."""
+        return None
+
+
+_CLOSE = 1e-9  # relative distance of a shift from a piece's own eigenvalue that is too near

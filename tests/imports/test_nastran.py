@@ -192,7 +192,7 @@ def test_a_grid_in_a_turned_system(tmp_path):
         ("PBEAM,5,1,.01,2.-5,8.-6,,1.-5,,+\n+\n+,,,.1", "shear relief"),
         ("PBARL,5,1,,HAT,,,,,+\n+,.1,.1,.1,.1", "shapes read are BAR"),
         ("PBARL,5,1,,I,,,,,+\n+,.3,.1,.2,.01,.01,.01", "an I whose flanges differ"),
-        ("CBAR,3,1,1,2,0.,0.,1.,GOO,+\n+,,,.1,,,.1", "offsets are read in the basic system"),
+        ("CBAR,3,1,1,2,0.,0.,1.,GOO,+\n+,,,.1,,,.1", "offsets along the bar itself are not"),
         ("PCOMP,5,,,,,,,MEM,+\n+,1,.1,0.,YES", "a laminate of MEM"),
         ("PARAM,MAGIC,1", "PARAM MAGIC is not known"),
         ("CONM2,8,2,,5.,1.", "masses beside their grid"),

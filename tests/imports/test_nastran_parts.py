@@ -100,6 +100,108 @@ def test_a_spring_under_a_tip(tmp_path, cards):
     assert found == pytest.approx(1.0 / (3.0 * E * I1 / L**3 + 2e6), rel=1e-9)
 
 
+def refused(tmp_path, text):
+    (tmp_path / "deck.bdf").write_text(text)
+    found = read_model(tmp_path / "deck.bdf")
+    assert found.structure is None
+    return "\n".join(map(str, found.problems))
+
+
+# x of system 7 runs along y; that of system 8 lies 30 degrees beside x; 9 is a cylinder's
+SYSTEMS = (
+    "CORD2R,7,,0.,0.,0.,0.,0.,1.,+\n+,0.,1.,0.\nCORD2R,8,,0.,0.,0.,0.,0.,1.,+\n+,.8660254,.5,0.\n"
+    "CORD2C,9,,0.,0.,0.,0.,0.,1.,+\n+,1.,0.,0.\n"
+)
+
+
+def post(system, *, vector="1.,0.,0.", more=""):
+    """A bar that stands, whose foot moves in a system, and its head in system 7."""
+    return BAR.replace("GRID,1,,0.,0.,0.,,", f"GRID,1,,0.,0.,0.,{system},").replace(
+        "GRID,2,,3.,0.,0.", "GRID,2,,0.,0.,3.,7"
+    ).replace("0.,0.,1.\n", f"{vector}{more}\n") + SYSTEMS  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("system", "vector", "more", "way"),
+    [
+        (0, "1.,0.,0.", "", (1.0, 0.0)),
+        (7, "1.,0.,0.", "", (0.0, 1.0)),
+        (7, "0.,1.,0.", "", (-1.0, 0.0)),
+        (8, "1.,0.,0.", "", (0.75**0.5, 0.5)),
+        (8, "1.,0.,0.", ",BGG", (1.0, 0.0)),
+    ],
+)
+def test_the_vector_of_a_bar_is_along_the_axes_of_its_first_grid(
+    tmp_path, system, vector, more, way
+):
+    """Plane 1 holds it: P L^3 / 3 E I1 that way, I2 across; BGG says that it is in the basic one.
+
+    By the manual (CBAR, remark 2) X1 to X3 are components in the displacement system of GA.
+    """
+    floor = model(tmp_path, post(system, vector=vector, more=more))
+    u = np.zeros((2, 2))
+    for dof in (0, 1):
+        load = np.zeros(floor.n_dofs)
+        load[floor.dof_index[1, dof]] = 1.0
+        u[:, dof] = spsolve(floor.stiffness, load)[floor.dof_index[1, :2]]
+    along = np.array(way)
+    across = np.array([-along[1], along[0]])
+    assert along @ u @ along == pytest.approx(L**3 / (3.0 * E * I1), rel=1e-6)
+    assert across @ u @ across == pytest.approx(L**3 / (3.0 * E * I2), rel=1e-6)
+
+
+def test_offsets_of_a_bar_are_along_the_axes_of_its_grids(tmp_path):
+    """A fifth of a metre along basic y: x of system 7 at the head, y of the basic one at the foot."""
+    text = post(0, more=",,+\n+,,,0.,.2,0.,.2,0.,0.")
+    (bar,) = model(tmp_path, text).beams
+    np.testing.assert_allclose(bar.offset, [0.0, 0.2, 0.0], atol=1e-12)
+    apart = post(0, more=",,+\n+,,,0.,.2,0.,0.,.2,0.")
+    assert "offsets that differ at both ends" in refused(tmp_path, apart)
+    assert "system 9 turn from place to place" in refused(tmp_path, post(9))
+
+
+def test_masses_of_one_dof_are_along_the_axes_of_their_grid(tmp_path):
+    """50 and 20 kg along x and y of system 7 move along basic y and x; 30 degrees leave products."""
+    bare = model(tmp_path, post(0))
+    cards = "CMASS2,5,50.,2,1\nCMASS2,6,20.,2,2\nCMASS2,7,3.,2,4\n"
+    floor = model(tmp_path, post(0) + cards)
+    rows = floor.dof_index[1]
+    added = (floor.mass - bare.mass).diagonal()[rows]
+    np.testing.assert_allclose(added, [20.0, 50.0, 0.0, 0.0, 3.0, 0.0], atol=1e-9)
+    aslant = post(0).replace("0.,0.,3.,7", "0.,0.,3.,8")
+    assert "(CD), which lie aslant" in refused(tmp_path, aslant + cards)
+    alike = "CMASS2,5,50.,2,1\nCMASS2,6,50.,2,2\nCMASS2,7,50.,2,3\n"  # the same along any axes
+    floor = model(tmp_path, aslant + alike)
+    np.testing.assert_allclose((floor.mass - bare.mass).diagonal()[rows][:3], 50.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("system", "dofs", "tied"),
+    [(7, "2", "100000"), (7, "156", "010101"), (8, "126", "110001"), (8, "3", "001000")],
+)
+def test_dofs_that_follow_are_along_the_axes_of_their_grid(tmp_path, system, dofs, tied):
+    """y of system 7 is -x; both level ones are level whatever the angle, and so is z."""
+    text = post(0) + f"GRID,3,,1.,0.,3.,{system}\nCBAR,2,1,2,3,0.,0.,1.\nRBE2,9,2,{dofs},3\n"
+    (link,) = model(tmp_path, text).links
+    assert "".join(str(int(one)) for one in link.dofs) == tied
+    if system == 8:
+        aslant = refused(tmp_path, text.replace(f"RBE2,9,2,{dofs}", "RBE2,9,2,1"))
+        assert "dofs 1 of grid 3, whose displacements have a system (CD 8), lie aslant" in aslant
+
+
+def test_springs_are_along_the_axes_of_their_grid(tmp_path):
+    """x of system 7 is basic y, z is z; aslant they are refused, and a bush lies along the basic."""
+    bare = model(tmp_path, post(0)).stiffness
+    cards = "CELAS2,5,2.+6,2,1\nCELAS2,6,3.+6,2,3\nCBUSH,7,3,2,,,,,0\nPBUSH,3,K,4.+6\n"
+    floor = model(tmp_path, post(0) + cards)
+    added = (floor.stiffness - bare).diagonal()[floor.dof_index[1]]
+    np.testing.assert_allclose(added, [4e6, 2e6, 3e6, 0, 0, 0], atol=1e-3)
+    aslant = post(0).replace("0.,0.,3.,7", "0.,0.,3.,8") + cards
+    assert "dofs 1 of grid 2, whose displacements" in refused(tmp_path, aslant)
+    two = post(0) + "GRID,3,,1.,0.,3.\nCBAR,2,1,2,3,0.,0.,1.\nCELAS2,5,2.+6,2,1,3,1\n"
+    assert "whose displacements have two systems (CD)" in refused(tmp_path, two)
+
+
 @pytest.mark.parametrize(
     ("pins", "plane_1", "plane_2"),
     [("", 192, 192), ("6", 48, 192), ("5", 192, 48), ("56", 48, 48)],

@@ -27,6 +27,9 @@ from trundle.structure.elements import GROUND, NodeInertia
         ("lbf, ft, slug", 4.4482216152605, 0.3048),
         ("Tonf, cm", 9806.65, 0.01),
         ("N, m, kg", 1.0, 1.0),
+        ("MN, m", 1e6, 1.0),
+        ("mN, mm", 1e-3, 1e-3),
+        ("mN, mm, kg", 1e-3, 1e-3),
     ],
 )
 def test_units_as_programs_write_them(text, force, length):
@@ -34,7 +37,9 @@ def test_units_as_programs_write_them(text, force, length):
     assert (units.force, units.length) == pytest.approx((force, length))
 
 
-@pytest.mark.parametrize("text", ["m", "kN", "kN, parsec", "", "kN, m, stone", "N, mm, kg"])
+@pytest.mark.parametrize(
+    "text", ["m", "kN", "kN, parsec", "", "kN, m, stone", "N, mm, kg", "mn, m", "mN, mm, t"]
+)
 def test_what_is_no_system_is_refused(text):
     with pytest.raises(InputError, match=r"are not understood|do not go together"):
         units_of(text)

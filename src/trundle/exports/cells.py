@@ -14,8 +14,6 @@ from trundle.structure.elements import GROUND
 
 __all__ = ["Cells", "cells_of", "shapes_at_nodes"]
 
-_GROUND_PAIR = 2
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cells:
@@ -34,15 +32,19 @@ class Cells:
 
 
 def cells_of(structure: Structure) -> Cells:
-    """Return the elements of a structure; springs to the ground are the points that they hold."""
+    """Return the elements of a structure; springs to the ground are the points that they hold.
+
+    A group of which some stand on the ground is two blocks of one name.
+    """
     blocks, names = list[Array](), list[str]()
     for group in structure.elements:
-        corners = group.connectivity
-        if (corners == GROUND).any():
-            corners = corners[:, :1] if corners.shape[1] == _GROUND_PAIR else corners[:0]
-        if len(corners):
-            blocks.append(np.asarray(corners))
-            names.append(group.name)
+        corners = np.asarray(group.connectivity)
+        grounded = np.any(corners == GROUND, axis=1)
+        points = corners[grounded].max(axis=1, keepdims=True)
+        for cells in (corners[~grounded], points[points[:, 0] != GROUND]):
+            if len(cells):
+                blocks.append(cells)
+                names.append(group.name)
     return Cells(blocks=tuple(blocks), groups=tuple(names))
 
 

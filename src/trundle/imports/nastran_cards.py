@@ -125,7 +125,10 @@ def cards_of(path: Path, files: dict[Path, None] | None = None) -> Iterator[Card
     """
     open_card: list[tuple[list[str], str]] = []
     for place, line in _lines(path, path.parent.resolve(), {} if files is None else files, []):
-        fields, continues = _fields(line)
+        try:
+            fields, continues = _fields(line)
+        except InputError as error:
+            raise InputError(f"{place}: {error}") from None
         if continues:
             if not open_card:
                 raise InputError(f"{place}: a line that continues no card: {line.strip()[:40]!r}")
@@ -191,15 +194,31 @@ def _fields(line: str) -> tuple[list[str], bool]:
     continues another gives none for its first.
     """
     text = line.expandtabs(8)
-    if "," in text:
-        fields = [field.strip() for field in text.split(",")][:10]
-        continues = not fields[0] or fields[0][0] in "+*"
-        values = (fields[1:9] if continues else fields[:9]) if len(fields) > 1 else fields
-        width = 8 if continues else 9
-        return values + [""] * (width - len(values)), continues
-    first = text[:8].strip()
+    between_commas = "," in text
+    first = (text.partition(",")[0] if between_commas else text[:8]).strip()
     large = first.endswith("*") or first.startswith("*")
-    size = 16 if large else 8
-    values = [text[8 + i * size : 8 + (i + 1) * size].strip() for i in range(4 if large else 8)]
+    n, size = (4, 16) if large else (8, 8)
+    if between_commas:
+        values = _between_commas(text, n)
+    else:
+        values = [text[8 + i * size : 8 + (i + 1) * size].strip() for i in range(n)]
     continues = not first or first[0] in "+*"
     return (values if continues else [first, *values]), continues
+
+
+def _between_commas(text: str, n: int) -> list[str]:
+    """Return the n values of a line of commas; behind them only the next line may be named.
+
+    Raises
+    ------
+    InputError
+        More values: they would stand in no field, and be lost.
+    """
+    cells = [cell.strip() for cell in text.split(",")][1:]
+    beyond = [cell for cell in cells[n:] if cell]
+    if len(beyond) > 1 or any(cell[0] not in "+*" for cell in beyond):
+        raise InputError(
+            f"a line holds {n} fields behind the first, and then a mark of the next line such as +;"
+            f" got {beyond[0][:40]!r} behind them: put it into a line of its own"
+        )
+    return (cells + [""] * n)[:n]

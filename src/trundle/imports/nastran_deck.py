@@ -11,6 +11,7 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure import BeamSection, Material
 
+_NOWHERE = (0.0, 0.0, 0.0)
 _MOST = 3_000_000  # grids, elements and properties: of more, memory would be full
 
 __all__ = [
@@ -55,7 +56,8 @@ class Member:
     property: int
     up: tuple[float, float, float] | None = None  # in the plane of its first bending; None:
     towards: int | None = None  # a grid that it points to; None: of no matter
-    offset: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    up_in_basic: bool = False  # not in the system in which its first grid moves
+    offsets: tuple[tuple[float, ...], tuple[float, ...]] = (_NOWHERE, _NOWHERE)  # as its grids move
     pins: tuple[str, str] = ("", "")
     place: str = ""
 
@@ -131,7 +133,10 @@ class Spring:
 
 @dataclass(kw_only=True)
 class Deck:
-    """What the cards say, by the numbers that they use."""
+    """What the cards say, by the numbers that they use.
+
+    Masses are along the axes of space, own masses along those in which their grid moves.
+    """
 
     grids: dict[int, Grid] = field(default_factory=dict)
     every_grid: Grid = field(default_factory=Grid)
@@ -146,6 +151,7 @@ class Deck:
     springs: list[Spring] = field(default_factory=list)
     rigid: list[tuple[int, tuple[range, ...], str, str]] = field(default_factory=list)
     masses: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)
+    own_masses: dict[int, Array] = field(default_factory=lambda: defaultdict(lambda: np.zeros(6)))
     supports: dict[int, list[tuple[range, str]]] = field(default_factory=lambda: defaultdict(list))
     added: dict[int, list[int]] = field(default_factory=dict)
     weight_to_mass: float = 1.0

@@ -173,9 +173,7 @@ def _bar(deck: Deck, card: Card) -> None:
     if not re.fullmatch(r"([GB][GO][GO])?", card.get(9)) or (
         "O" in card.get(9) and any(first + last)
     ):
-        raise InputError(f"offsets are read in the basic system; got {card.get(9)}")
-    if first != last:
-        raise InputError("offsets that differ at both ends are not read")
+        raise InputError(f"offsets along the bar itself are not read; got {card.get(9)}")
     if any(card.get(i) for i in (18, 19)):
         raise InputError("warping grids are not read")
     towards = not card.get(7) and not card.get(8) and card.get(6).isdigit()
@@ -185,7 +183,8 @@ def _bar(deck: Deck, card: Card) -> None:
             property=whole(card.get(3), deck.claim("element", whole(card.get(2)))),
             up=None if towards else _triple(card, 6),
             towards=whole(card.get(6)) if towards else None,
-            offset=first,
+            up_in_basic=card.get(9).startswith("B"),
+            offsets=(first, last),
             pins=(card.get(10), card.get(11)),
             place=card.place,
         )

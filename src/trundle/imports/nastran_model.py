@@ -11,7 +11,7 @@ import numpy as np
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.imports.nastran_deck import Deck, Face, Laminate, Member, MemberMake
+from trundle.imports.nastran_deck import Deck, Face, Laminate, Member, MemberMake, Spring
 from trundle.imports.nastran_places import Places
 from trundle.imports.nastran_plates import axis_of, is_turned, plate_section
 from trundle.structure import (
@@ -32,7 +32,6 @@ from trundle.structure.frames import plate_areas
 
 __all__ = ["floor_of"]
 
-_LEVEL = 1e-9  # of the cosine of a system's z to the vertical
 _SAME = 1e-6  # m, within which the grids of a bush are at one place
 
 
@@ -155,8 +154,8 @@ class _Builder:
         for bar in self._deck.bars:
             ends = self._node(bar.ends[0], bar.place), self._node(bar.ends[1], bar.place)
             make = self._make(bar)
-            up = self._up(bar, ends)
-            found[bar.property, up, bar.offset, _released(bar, make)].append(ends)
+            up, offset = self._up(bar, ends), self._offset(bar)
+            found[bar.property, up, offset, _released(bar, make)].append(ends)
         for (number, up, offset, released), elements in found.items():
             numbers = np.array(elements)
             group = BeamGroup(
@@ -181,6 +180,8 @@ class _Builder:
             raise InputError(f"{bar.place}: both ends are at one place")
         if bar.up is not None:
             up = np.array(bar.up)
+            if not bar.up_in_basic:
+                up = self._places.from_own(bar.up, bar.ends[0], bar.place)
         elif bar.towards is not None:
             up = self._nodes[self._node(bar.towards, bar.place)] - self._nodes[ends[0]]
         else:  # a rod has no sides: any direction across it
@@ -188,6 +189,16 @@ class _Builder:
         if np.linalg.norm(np.cross(along, up)) < 1e-9 * np.linalg.norm(along):
             raise InputError(f"{bar.place}: the orientation lies along the bar")
         return tuple((up / np.linalg.norm(up)).tolist())
+
+    def _offset(self, bar: Member) -> tuple[float, ...]:
+        """Return how far from its grids a bar lies, alike at both ends."""
+        first, last = (
+            self._places.from_own(offset, end, bar.place)
+            for offset, end in zip(bar.offsets, bar.ends, strict=True)
+        )
+        if np.linalg.norm(first - last) > _SAME * np.linalg.norm(first):
+            raise InputError(f"{bar.place}: offsets that differ at both ends are not read")
+        return tuple(first.tolist())
 
     def _bar_section(self, number: int, elements: Array) -> BeamSection:
         """Return a member's section; without mass where that is on its nodes."""
@@ -202,10 +213,14 @@ class _Builder:
         return replace(make.section, material=replace(material, density=density))
 
     def _masses(self) -> Iterator[PointMasses | NodeInertia]:
-        if not self._deck.masses:
+        own = self._deck.own_masses
+        numbers = [*(number for number, _ in self._deck.masses), *own]
+        if not numbers:
             return
-        at = np.array([self._node(number, "a mass") for number, _ in self._deck.masses])
-        six = self._deck.weight_to_mass * np.array([mass for _, mass in self._deck.masses])
+        at = np.array([self._node(number, "a mass") for number in numbers])
+        turned = [self._places.inertia_from_own(six, number) for number, six in own.items()]
+        six = np.array([*(mass for _, mass in self._deck.masses), *turned])
+        six = self._deck.weight_to_mass * six
         plain = (six[:, :3] == six[:, :1]).all(axis=1) & ~six[:, 3:].any(axis=1)
         if plain.any():
             yield PointMasses(nodes=at[plain], mass=six[plain, 0], name="CONM2")
@@ -220,35 +235,39 @@ class _Builder:
                     f"{spring.place} names property {spring.property}, which is no spring's"
                 )
             stiffness = np.zeros(6)
+            ends = [GROUND if n is None else self._node(n, spring.place) for n in spring.ends]
+            self._check_spring(spring, ends)
             if spring.dof:
-                stiffness[spring.dof - 1] = known[0]
+                dof = self._places.dofs_in_basic(spring.ends[0], str(spring.dof), spring.place)
+                stiffness[dof] = known[0]
             elif len(known) == 6:
                 stiffness[:] = known
             else:
                 raise InputError(
                     f"{spring.place} names property {spring.property}, which is no PBUSH"
                 )
-            ends = [GROUND if n is None else self._node(n, spring.place) for n in spring.ends]
-            self._check_spring(spring.dof, ends, spring.place)
             yield SpringGroup(elements=np.array([ends]), stiffness=stiffness, name="spring")
 
-    def _check_spring(self, dof: int, ends: Sequence[int], place: str) -> None:
-        """Refuse springs along other axes than the basic ones, and bushes with arms."""
-        numbers = list(self._deck.grids)
-        some = [node for node in ends if node != GROUND]
-        if any(self._moves_in(numbers[node]) for node in some):
-            raise InputError(f"{place}: a spring at a grid whose displacements have a system (CD)")
-        if not dof and len(some) == 2 and np.ptp(self._nodes[some], axis=0).max() > _SAME:
-            raise InputError(f"{place}: a bush between grids that are apart is not read")
+    def _check_spring(self, spring: Spring, ends: Sequence[int]) -> None:
+        """Refuse springs between dofs along different axes, and bushes with arms."""
+        systems = {self._places.moves_in(number) for number in spring.ends if number is not None}
+        if spring.dof and len(systems) > 1:
+            raise InputError(
+                f"{spring.place}: a spring between grids whose displacements have two systems (CD)"
+            )
+        apart = GROUND not in ends and np.ptp(self._nodes[list(ends)], axis=0).max() > _SAME
+        if not spring.dof and apart:
+            raise InputError(f"{spring.place}: a bush between grids that are apart is not read")
 
     def _links(self) -> tuple[RigidLinks, ...]:
         wholly: dict[int, int] = {}
-        partly: dict[str, list[tuple[int, int]]] = defaultdict(list)
+        partly: dict[tuple[bool, ...], list[tuple[int, int]]] = defaultdict(list)
         for lead, some, dofs, place in self._deck.rigid:
             for number in self._there(some):
                 pair = self._node(number, place), self._node(lead, place)
                 if dofs != "123456":
-                    partly[dofs].append(pair)
+                    tied = self._places.dofs_in_basic(number, dofs, place)
+                    partly[tuple(tied.tolist())].append(pair)
                 elif pair[0] in wholly:
                     raise InputError("a grid follows two others by RBE2")
                 else:
@@ -260,13 +279,8 @@ class _Builder:
         for dofs, pairs in partly.items():
             behind, leads = np.array(pairs).T
             leads = np.array([wholly.get(int(node), int(node)) for node in leads])
-            tied = np.array([str(i) in dofs for i in range(1, 7)])
-            found.append(RigidLinks(leads=leads, follows=behind, dofs=tied))
+            found.append(RigidLinks(leads=leads, follows=behind, dofs=np.array(dofs)))
         return tuple(found)
-
-    def _moves_in(self, number: int) -> int:
-        own = self._deck.grids[number].moves_in
-        return own if own is not None else self._deck.every_grid.moves_in or 0
 
     def _fixed(self) -> Array:
         fixed = np.zeros((len(self._row), 6), dtype=bool)
@@ -295,21 +309,11 @@ class _Builder:
             raise InputError(f"grid {grid} is held in {dofs!r}; dofs are numbered 1 to 6")
         node = self._node(grid, "a support")
         held = {int(dof) for dof in dofs.strip("0")}
-        if self._moves_in(grid) and any(
+        if self._places.moves_in(grid) and any(
             0 < len(held & some) < 3 for some in ({1, 2, 3}, {4, 5, 6})
         ):
-            self._angles[node] = self._angle(grid, dofs)
+            self._angles[node] = self._places.angle_of(grid, dofs)
         fixed[node, [dof - 1 for dof in held]] = True
-
-    def _angle(self, grid: int, dofs: str) -> float:
-        """Return by how much the axes are turned about z along which a grid is held in part."""
-        axes = self._places.axes_of(self._moves_in(grid), f"grid {grid}")
-        if abs(axes[2, 2] - 1.0) > _LEVEL:
-            raise InputError(
-                f"grid {grid} is held in {dofs} of a system of its own (CD) that is not turned "
-                "about z alone, which is not read"
-            )
-        return float(np.arctan2(axes[0, 1], axes[0, 0]))
 
 
 def _bar_name(number: int) -> str:

@@ -121,7 +121,7 @@ def _cmass2(deck: Deck, card: Card) -> None:
     mass, grid, dof = non_negative("M", real(card.get(3))), whole(card.get(4)), whole(card.get(5))
     if card.get(6) or not 1 <= dof <= 6:
         raise InputError("a scalar mass is read at one dof of one grid, 1 to 6")
-    deck.masses.append((grid, tuple(mass * (i == dof) for i in range(1, 7))))
+    deck.own_masses[grid][dof - 1] += mass
 
 
 def _pelas(deck: Deck, card: Card) -> None:

@@ -11,6 +11,7 @@ import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from jaxtyping import Float, Int
 
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.imports.unit_system import says_no_unit, says_unit
 
 __all__ = ["NumberTable", "read_table"]
 
@@ -152,8 +154,9 @@ def read_table(path: Path) -> NumberTable:
     Parameters
     ----------
     path : Path
-        A text file; lines before the heading that are a title, a line of units below it, and lines
-        that begin with # are passed over.
+        A text file; lines before the heading that are a title, and lines that begin with # are
+        passed over. A line below the heading is one of units where all its words are units, or
+        say that there is none.
 
     Raises
     ------
@@ -162,14 +165,14 @@ def read_table(path: Path) -> NumberTable:
     """
     text = _text(path)
     lines = text.splitlines()
-    at = next((i for i, line in enumerate(lines) if _is_heading(line)), None)
+    at = _heading_in(lines)
     if at is None:
         raise InputError(f"{path.name}: holds no table: a heading, and numbers below it")
     heading = lines[at]
-    mark = next((one for one in ("\t", ";", ",") if one in heading), r"\s+")
+    mark = _mark_of(heading)
     below = [(i, line) for i, line in enumerate(lines[at + 1 :], at + 2) if _counts(line)]
     comma = mark == ";" and "." not in "".join(line for _, line in below[:50])
-    frame = _frame(path.name, heading, [line for _, line in below], at + 1, mark, comma=comma)
+    frame = _frame(path.name, heading, below, mark, comma=comma)
     names = [_plain(str(one)) for one in frame.columns]
     if len({_plain(one) for one in re.split(mark, heading.replace('"', ""))}) < len(names):
         raise InputError(f"{path.name}, line {at + 1}: two columns have one heading")
@@ -177,9 +180,9 @@ def read_table(path: Path) -> NumberTable:
     numbers = np.array([i for i, _ in below], dtype=np.int64)[: len(frame)]
     given = re.split(mark, heading.replace('"', ""))
     units = {_plain(one): m[0].strip(" []()").lower() for one in given if (m := _UNIT.search(one))}
-    if len(frame) and _says_units(frame.iloc[0]):
-        below = zip(names, frame.iloc[0].tolist(), strict=True)
-        units |= {k: str(v).lower() for k, v in below if isinstance(v, str) and v}
+    if len(frame) and _says_units(frame):
+        said = zip(names, frame.iloc[0].tolist(), strict=True)
+        units |= {k: v.strip("[]()").lower() for k, v in said if isinstance(v, str) and v}
         frame, numbers = frame.iloc[1:], numbers[1:]
     if not len(frame):
         raise InputError(f"{path.name}: has a heading, and no rows")
@@ -187,8 +190,9 @@ def read_table(path: Path) -> NumberTable:
 
 
 def _frame(
-    name: str, heading: str, rows: Sequence[str], line: int, mark: str, *, comma: bool
+    name: str, heading: str, below: Sequence[tuple[int, str]], mark: str, *, comma: bool
 ) -> Any:  # noqa: ANN401 - pandas's
+    """Return the cells of rows, which come with their numbers in the file."""
     import io  # noqa: PLC0415 - with pandas
 
     import pandas as pd  # noqa: PLC0415 - a quarter of a second, for tables alone
@@ -197,7 +201,7 @@ def _frame(
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             frame = pd.read_csv(
-                io.StringIO("\n".join([heading, *rows])), sep=mark, dtype=str,
+                io.StringIO("\n".join([heading, *(row for _, row in below)])), sep=mark, dtype=str,
                 skipinitialspace=True, index_col=False, keep_default_na=False, na_values=[""],
                 quotechar='"',
             )  # fmt: skip
@@ -205,7 +209,8 @@ def _frame(
         raise InputError(f"{name}: a row has more columns than the heading") from None
     except pd.errors.ParserError as error:
         found = _RAGGED.search(str(error))
-        where = f", line {line + int(found[2]) - 1}" if found else ""
+        # the heading is the first line that pandas sees
+        where = f", line {below[int(found[2]) - 2][0]}" if found else ""
         what = f"has {found[3]} columns, and the heading {found[1]}" if found else "is no table"
         raise InputError(f"{name}{where}: {what}") from None
     except (pd.errors.EmptyDataError, ValueError):
@@ -220,16 +225,50 @@ def _counts(line: str) -> bool:
     return bool(line.strip(" ,;\t")) and not line.lstrip().startswith(("#", "!", "$"))
 
 
-def _is_heading(line: str) -> bool:
-    """Return whether a line names two columns or more: titles and comments do not."""
+def _mark_of(line: str) -> str:
+    """Return what stands between the columns of a line."""
+    return next((one for one in ("\t", ";", ",") if one in line), r"\s+")
+
+
+def _heading_in(lines: Sequence[str]) -> int | None:
+    """Return where the heading stands; None if there is none."""
+    counted = [i for i, line in enumerate(lines) if _counts(line)]
+    for i, after in zip_longest(counted, counted[1:]):
+        if _may_head(lines[i]) and (after is None or not _is_title(lines[i], lines[after])):
+            return i
+    return None
+
+
+def _is_title(line: str, below: str) -> bool:
+    """Return whether a line is of other columns than the one below it, which names some.
+
+    A row may be shorter than its heading, as that of a triangle among quadrilaterals is.
+    """
+    mark = _mark_of(below)
+    if not _may_head(below) or mark != _mark_of(line):
+        return _may_head(below)
+    columns, cells = (re.split(mark, one.strip()) for one in (line, below))
+    return len(columns) < len(cells) and not any(map(_is_number, cells))
+
+
+def _may_head(line: str) -> bool:
+    """Return whether a line may name two columns or more."""
     words = [one for one in re.split(r"[\t;,]|\s+", line.strip()) if one]
     named = len(words) > 1 and not line.upper().startswith("TABLE:") and _counts(line)
     return named and not any(_is_number(one) for one in words[:1])
 
 
-def _says_units(row: Any) -> bool:  # noqa: ANN401 - a row of pandas's
-    """Return whether a row has no number in it: units below a heading."""
-    return not any(isinstance(cell, str) and _is_number(cell) for cell in row)
+def _says_units(frame: Any) -> bool:  # noqa: ANN401 - pandas's
+    """Return whether the first row is of units: all its words are, and numbers stand below.
+
+    Nodes may be called m and N: what stands below a unit is a number, or the row is one of names.
+    """
+    first = ["" if isinstance(cell, float) else str(cell) for cell in frame.iloc[0]]
+    if not all(says_unit(cell) or says_no_unit(cell) for cell in first):
+        return False
+    measured = [i for i, cell in enumerate(first) if not says_no_unit(cell)]
+    below = frame.iloc[1:2, measured].to_numpy().ravel().tolist()
+    return all(isinstance(cell, float) or _is_number(cell) for cell in below)
 
 
 def _text(path: Path) -> str:

@@ -17,7 +17,10 @@ from trundle.errors import InputError
 __all__ = ["Row", "Table", "read_tables"]
 
 _TABLE = re.compile(r'^\s*TABLE:\s*"?([^"]*?)"?\s*$', re.IGNORECASE)
-_PAIR = re.compile(r'\s*([^\s="]+)\s*=\s*("(?:[^"]|"")*"|[^\s"]*)')
+_PAIR = re.compile(
+    r'\s*([^\s="]+)\s*='
+    r'(\s*"(?:[^"]|"")*"|[^\s"]+|\s+[^\s="]+(?![^\s"]*\s*=)|)'  # behind a blank no other key
+)
 _YES = {"yes": True, "no": False, "true": True, "false": False}
 
 
@@ -163,7 +166,7 @@ def _row(place: str, line: str) -> Row:
             break
         if found[1].lower() in cells:
             raise InputError(f"{place}: {found[1]} is there twice")
-        cells[found[1].lower()] = found[2].strip('"').replace('""', '"').strip()
+        cells[found[1].lower()] = found[2].strip().strip('"').replace('""', '"').strip()
         at = found.end()
     if line[at:].strip() or not cells:
         raise InputError(f"{place}: must be Key=Value pairs; got {line[at:].strip()[:40]!r}")

@@ -26,16 +26,23 @@ from trundle.structure import (
 from trundle.structure.elements import Elements, NodeInertia, ReleasedBeams
 from trundle.units import to_si
 
-__all__ = ["SI", "Units", "agreed_units", "in_si", "units_of"]
+__all__ = ["SI", "Units", "agreed_units", "in_si", "says_no_unit", "says_unit", "units_of"]
 
 _FORCES = {
-    "n": 1.0, "kn": 1e3, "mn": 1e6, "kgf": 9.80665, "tonf": 9806.65, "tf": 9806.65,
+    "n": 1.0, "kn": 1e3, "kgf": 9.80665, "tonf": 9806.65, "tf": 9806.65,
     "lb": 4.4482216152605, "lbf": 4.4482216152605, "kip": 4448.2216152605, "kips": 4448.2216152605,
     "dyne": 1e-5,
 }  # fmt: skip
+_FORCES_BY_CASE = {"MN": 1e6, "mN": 1e-3}  # a capital M is a million, a small one a thousandth
 _LENGTHS = {"m", "cm", "mm", "in", "ft", "dm", "micron", "inch", "meter", "metre"}
 _MASSES = {"kg", "t", "g", "tonne", "slug", "slinch", "mg"}
 _NOT_MECHANICAL = {"c", "f", "k", "s", "sec"}  # temperature, and the second
+_OTHERS = {
+    "sec", "s", "ms", "min", "hz", "cyc", "cycle", "cycles", "cps", "rpm", "rad", "radian",
+    "radians", "deg", "degree", "degrees", "mn",
+}  # fmt: skip
+_NO_UNIT = {"", "-", "text", "unitless", "none", "yes/no"}  # below a heading
+_PRODUCT = re.compile(r"(?:1/)?[a-z]+(?:\^?-?\d)?(?:[*/·.-][a-z]+(?:\^?-?\d)?)*")
 _SAME = 1e-5  # relative, by which a mass may differ from force and length's
 
 
@@ -77,16 +84,17 @@ def units_of(text: str) -> Units:
         No force and length, or a mass that does not go with them.
     """
     words = [word for word in re.split(r"[\s,;]+", text.strip().strip('"')) if word]
-    force = next((one for one in words if one.lower() in _FORCES), None)
+    force = next((one for one in words if _newtons(one) is not None), None)
     length = next((one for one in words if one.lower() in _LENGTHS), None)
     rest = [w for w in words if w not in (force, length) and w.lower() not in _NOT_MECHANICAL]
-    if force is None or length is None or any(one.lower() not in _MASSES for one in rest):
+    newtons = None if force is None else _newtons(force)
+    if newtons is None or length is None or any(one.lower() not in _MASSES for one in rest):
         raise InputError(
             f"units {text!r} are not understood; write those of force and length, such as "
             '"kN, m" or "kip, in"'
         )
     units = Units(
-        force=_FORCES[force.lower()],
+        force=newtons,
         length=to_si(f"1 {_spelled(length)}", "length"),
         said=f"{force}, {length}",
     )
@@ -98,6 +106,25 @@ def units_of(text: str) -> Units:
                 f"{length} a second squared, and one {one} is {mass:g} kg"
             )
     return units
+
+
+def _newtons(word: str) -> float | None:
+    """Return one unit of a force [N]; None where a word is none."""
+    return _FORCES_BY_CASE.get(word, _FORCES.get(word.lower()))
+
+
+def says_unit(word: str) -> bool:
+    """Return whether a word is a unit of mechanics, or a product such as ``kN-s2/m``."""
+    plain = word.strip("[]()").lower()
+    if not _PRODUCT.fullmatch(plain):
+        return False
+    known = {*_FORCES, *_LENGTHS, *_MASSES, *_OTHERS}
+    return all(part in known for part in re.findall(r"[a-z]+", plain))
+
+
+def says_no_unit(word: str) -> bool:
+    """Return whether a word below a heading says that its column has no unit."""
+    return word.strip("[]()").lower() in _NO_UNIT
 
 
 def agreed_units(stated: Units | None, asked: Units | None) -> tuple[Units, tuple[str, ...]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,6 +15,7 @@ from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, factorise, natural_modes
 from trundle.errors import InputError
 from trundle.structure.assembly import Form, assembled, blocks_of, without_noughts
+from trundle.structure.content import hash_of, parts_of
 from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Damped, Elements
@@ -179,16 +179,15 @@ class Floor:
 
     @property
     def content_hash(self) -> str:
-        """Hash of all that decides the matrices; equal floors share it."""
+        """Hash of all that decides matrices, damping and places; equal floors share it."""
         return self._content_hash
 
     @cached_property
     def _content_hash(self) -> str:
-        digest = hashlib.sha256()
-        for matrix in (self.stiffness, self.mass):
-            for part in (matrix.indptr, matrix.indices, matrix.data):
-                digest.update(np.ascontiguousarray(part).tobytes())
-        return digest.hexdigest()[:16]
+        motion = [self.dof_index, *parts_of(self.stiffness), *parts_of(self.mass)]
+        if self.expansion is not None:
+            motion += parts_of(self.expansion.tocsc())
+        return hash_of(self, motion)
 
     def modes(self, f_max: float, *, progress: Progress | None = None) -> Modes:
         """Return all natural modes below a frequency [Hz], see `natural_modes`."""
@@ -219,12 +218,26 @@ class Floor:
         return in_space @ own_motion(self.dof_index, self.n_dofs, self.angles)
 
     def inertia_of(self, dof: int) -> Float[Array, " dofs"]:
-        """Return the forces of inertia of a unit acceleration of all free dofs of a kind [kg]."""
-        return self.mass @ self.rigid_vector(dof)
+        """Return the forces on the free dofs of a unit acceleration of all nodes in a dof [kg].
+
+        All nodes are those too that supports hold: the mass between a support and the node beside
+        it hangs on that node in part.
+        """
+        blocks = blocks_of(self.elements, self.nodes, lambda group, xyz: group.mass_blocks(xyz))
+        forces = np.zeros(self.fixed.shape)
+        for one in blocks:
+            by_shape = one.distinct[:, :, dof::6].sum(axis=2)
+            on_nodes = by_shape[one.which].reshape(*one.connectivity.shape, 6)
+            there = one.connectivity != GROUND
+            np.add.at(forces, one.connectivity[there], on_nodes[there])
+        if self.expansion is None:
+            return forces[self.dof_index >= 0]
+        return forces.ravel() @ self.expansion
 
     def moving_mass(self, dof: int = 2) -> float:
         """Return the mass that moves with a unit motion of all free dofs of a kind [kg]."""
-        return float(self.rigid_vector(dof) @ self.inertia_of(dof))
+        moving = self.rigid_vector(dof)
+        return float(moving @ (self.mass @ moving))
 
     @cached_property
     def _carried(self) -> Bool[Array, "nodes 6"]:

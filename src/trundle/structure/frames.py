@@ -83,12 +83,12 @@ def beam_frames(
     """Return lengths and frames (rows x, y, z) of straight members.
 
     Local x runs from the first end to the second; local z is the part of `up` normal to x,
-    or of global x where the member is parallel to `up`.
+    or of global x where the member is parallel to `up`, or of global z where it is along x too.
 
     Raises
     ------
     InputError
-        A member without length.
+        A member without length, or an `up` without direction.
     """
     along = ends[:, 1] - ends[:, 0]
     lengths = np.linalg.norm(along, axis=1)
@@ -96,8 +96,13 @@ def beam_frames(
         raise InputError(f"beam element {int(np.argmin(lengths))} has no length")
     x_axis = along / lengths[:, None]
     reference = np.broadcast_to(up, x_axis.shape).copy()
-    parallel = np.linalg.norm(np.cross(x_axis, reference), axis=1) < 1e-6
+    size = float(np.linalg.norm(up))
+    if not size > 0.0:
+        raise InputError("up must be a direction; got 0, 0, 0")
+    parallel = np.linalg.norm(np.cross(x_axis, reference), axis=1) < 1e-6 * size
     reference[parallel] = np.array([1.0, 0.0, 0.0])
+    along_x = np.linalg.norm(x_axis[:, 1:], axis=1) < 1e-6
+    reference[parallel & along_x] = np.array([0.0, 0.0, 1.0])
     z_axis = reference - np.sum(reference * x_axis, axis=1, keepdims=True) * x_axis
     z_axis /= np.linalg.norm(z_axis, axis=1, keepdims=True)
     return lengths, np.stack([x_axis, np.cross(z_axis, x_axis), z_axis], axis=1)

@@ -109,10 +109,12 @@ def expansion_of(
     Raises
     ------
     InputError
-        A node that follows is held in a dof in which the one that leads moves it.
+        A node that follows is held in a dof in which the one that leads moves it, or follows along
+        x or y alone and has axes of its own.
     """
     own = own_motion(index, int(index.max()) + 1, angles)
     wholly, partly = _kinds(leader)
+    _check_axes(leader, angles)
     base = own + _carried(nodes, leader, partly) @ own
     carried = _carried(nodes, leader, wholly) @ base
     _check_held(carried + (base - own), fixed, angles, leader)
@@ -178,6 +180,19 @@ def _check_held(carried: SparseMatrix, fixed: Array, angles: Array | None, leade
         raise InputError(
             f"rigid links: node {held[int(np.argmax(moved))] // 6} is held, and follows a node "
             "that moves: hold the one that leads"
+        )
+
+
+def _check_axes(leader: Array, angles: Array | None) -> None:
+    """Refuse nodes that follow along x or y alone, and whose own dofs would move them there too."""
+    if angles is None:
+        return
+    follows = leader >= 0
+    odd = (follows[:, [0, 3]] != follows[:, [1, 4]]) & (angles != 0.0)
+    if np.any(odd):
+        raise InputError(
+            f"rigid links: node {np.argwhere(odd)[0, 0]} follows along x or y alone, and its own "
+            "axes are turned: let it follow along both"
         )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +14,7 @@ from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, factorise, natural_modes
 from trundle.errors import InputError
+from trundle.structure.content import hash_of, parts_of
 from trundle.structure.elements import Elements
 from trundle.structure.elements.faces import FaceGroup
 from trundle.structure.model import MirrorPlane
@@ -101,16 +101,12 @@ class MatrixModel:
 
     @property
     def content_hash(self) -> str:
-        """Hash of both matrices."""
+        """Hash of both matrices, and of all places."""
         return self._content_hash
 
     @cached_property
     def _content_hash(self) -> str:
-        digest = hashlib.sha256()
-        for matrix in (self.stiffness, self.mass):
-            for part in (matrix.indptr, matrix.indices, matrix.data):
-                digest.update(np.ascontiguousarray(part).tobytes())
-        return digest.hexdigest()[:16]
+        return hash_of(self, [self.dof_index, *parts_of(self.stiffness), *parts_of(self.mass)])
 
     def modes(self, f_max: float, *, progress: Progress | None = None) -> Modes:
         """Return all natural modes below a frequency [Hz], see `natural_modes`."""
@@ -129,7 +125,10 @@ class MatrixModel:
         return other * self.stiffness
 
     def inertia_of(self, dof: int) -> Float[Array, " dofs"]:
-        """Return the forces of inertia of a unit acceleration of all dofs of a kind [kg]."""
+        """Return the forces of inertia of a unit acceleration of all dofs of a kind [kg].
+
+        What the other program held is not among them, nor the mass that hangs on it.
+        """
         return self.mass @ self._unit(dof)
 
     def moving_mass(self, dof: int = 2) -> float:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,12 +14,15 @@ from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Modes
 from trundle.errors import InputError
+from trundle.structure.content import hash_of
 from trundle.structure.elements import Elements
 from trundle.structure.elements.faces import FaceGroup
 from trundle.structure.model import MirrorPlane
 from trundle.structure.surface import Surface, check_names, named_surface
 
 __all__ = ["ModalModel"]
+
+_SAME = 1e-9  # relative, within which two frequencies are one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -112,18 +114,17 @@ class ModalModel:
 
     @property
     def content_hash(self) -> str:
-        """Hash of all that decides its motion."""
+        """Hash of all that decides its motion and places."""
         return self._content_hash
 
     @cached_property
     def _content_hash(self) -> str:
-        digest = hashlib.sha256(repr(self.reach).encode())
-        for part in (self.omega, self.shapes, self.dof_index):
-            digest.update(np.ascontiguousarray(part).tobytes())
-        return digest.hexdigest()[:16]
+        return hash_of(self, [np.array(self.reach), self.omega, self.shapes, self.dof_index])
 
     def modes(self, f_max: float, *, progress: Progress | None = None) -> Modes:
-        """Return the modes below a frequency [Hz].
+        """Return the modes below a frequency [Hz]; those at the end of what is known are too.
+
+        A study that asks for all that there are names the last frequency, and means its mode.
 
         Raises
         ------
@@ -131,11 +132,13 @@ class ModalModel:
             They are not known as far.
         """
         del progress
-        if f_max > self.reach * (1.0 + 1e-9):
+        end = self.reach * (1.0 + _SAME)
+        if f_max > end:
             raise InputError(
                 f"{self.name}: modes are known to {self.reach:g} Hz; f_max may be no higher"
             )
-        some = self.omega < 2.0 * np.pi * f_max
+        at_the_end = f_max > self.reach * (1.0 - 2.0 * _SAME)
+        some = self.omega < 2.0 * np.pi * (end if at_the_end else f_max)
         return Modes(
             omega=self.omega[some],
             shapes=np.ascontiguousarray(self.shapes[:, some]),

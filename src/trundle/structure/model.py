@@ -109,9 +109,9 @@ class Structure(Protocol):
         ...
 
     def inertia_of(self, dof: int) -> Float[Array, " dofs"] | None:
-        """Return the forces of inertia of a unit acceleration of the whole in a dof [kg].
+        """Return the forces on the free dofs of a unit acceleration of the whole in a dof [kg].
 
-        None where only modes are known.
+        The whole is what supports hold too, where that is known; None where only modes are known.
         """
         ...
 
@@ -134,7 +134,7 @@ class Structure(Protocol):
 
     @property
     def content_hash(self) -> str:
-        """Hash of all that decides its motion; equal structures share it."""
+        """Hash of all that decides its motion and its places; equal structures share it."""
         ...
 
     @property

@@ -9,7 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 from jaxtyping import Float
 
-from trundle._checks import count, frozen_array, one_of, positive, set_frozen
+from trundle._checks import count, finite, frozen_array, non_negative, one_of, positive, set_frozen
 from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.errors import InputError
@@ -104,10 +104,10 @@ class FloorPlan:
     name: str = "storey"
 
     def __post_init__(self) -> None:
-        """Check lines against the extent, and the names of edges."""
+        """Check lines against the extent, heights, and the names of edges."""
         for axis in ("x", "y"):
             lines = frozen_array(f"{axis}_lines", getattr(self, f"{axis}_lines"), shape=(None,))
-            low, high = (float(value) for value in getattr(self, f"{axis}_extent"))
+            low, high = (finite(f"{axis}_extent", v) for v in getattr(self, f"{axis}_extent"))
             if high <= low:
                 raise InputError(f"{axis}_extent must rise; got {low:g} to {high:g} m")
             if np.any(np.diff(lines) < _CLOSEST):
@@ -124,6 +124,8 @@ class FloorPlan:
         for edge, kind in self.edges.items():
             one_of("edge", edge, EDGES)
             one_of(f"edges.{edge}", kind, get_args(Edge))
+        for name in ("storey_below", "storey_above"):
+            set_frozen(self, **{name: non_negative(name, getattr(self, name))})
         count("secondary_per_bay", self.secondary_per_bay)
         one_of("column_heads", self.column_heads, ("point", "rigid"))
 

@@ -77,9 +77,8 @@ def write(subject: Subject, stem: str) -> Mapping[str, bytes]:
         shapes = shapes_at_nodes(structure, modes)
         names = [f"mode {i}, {f:.2f} Hz" for i, f in enumerate(modes.frequencies, start=1)]
     size = float(np.ptp(structure.nodes, axis=0).max())
-    shapes = shapes * [
-        [[_SHOWN * size / max(float(np.abs(shape[:, :3]).max()), 1e-300)]] for shape in shapes
-    ]  # fmt: skip
+    largest = np.abs(shapes[:, :, :3]).max(axis=(1, 2), keepdims=True, initial=1e-300)
+    shapes = shapes * (_SHOWN * size / largest)
     shown = dict(zip(names, shapes, strict=True))
     solids = solids_of(structure)
     kinds = sorted({solid.kind for solid in solids})

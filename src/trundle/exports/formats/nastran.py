@@ -62,6 +62,23 @@ class _Writer:
             head = f"{name}*" if i == 0 else "*"
             self.lines.append(f"{head:<8}{''.join(row)}".rstrip())
 
+    def angle(self, node: int) -> float:
+        """Return by how much the axes along which a node is held are turned about z [rad]."""
+        angles = self._floor.angles
+        return 0.0 if angles is None else float(angles[node, 0])
+
+    def own(self, node: int, vector: Array) -> list[float]:
+        """Return a vector along the axes in which a node moves: cards of bars count in them."""
+        x, y, z = vector.tolist()
+        if not (angle := self.angle(node)):
+            return [x, y, z]
+        c, s = float(np.cos(angle)), float(np.sin(angle))
+        return [c * x + s * y, c * y - s * x, z]
+
+    def level_alike(self, node: int, six: Array) -> bool:
+        """Return whether it is the same along x and y as along a node's own axes."""
+        return not self.angle(node) or bool(six[0] == six[1] and six[3] == six[4])
+
     def material(self, material: Material) -> int:
         """Return the number of a material, writing it when it is new."""
         if material not in self._materials:
@@ -141,18 +158,27 @@ def _group(out: _Writer, nodes: Array, group: Elements) -> None:
     elif isinstance(group, ReleasedBeams):
         _bars(out, nodes, group.beams, group.released)
     elif isinstance(group, SpringGroup):
-        _springs(out, group)
+        _springs(out, nodes, group)
     elif isinstance(group, PointMasses):
         masses = np.broadcast_to(group.mass, group.nodes.shape)
         for node, mass in zip(group.nodes.tolist(), masses.tolist(), strict=True):
             out.card("CONM2", out.next("element"), node + 1, None, mass)
     elif isinstance(group, NodeInertia):
-        for node, six in zip(group.nodes.tolist(), group.inertia.tolist(), strict=True):
-            for dof, mass in enumerate(six, start=1):
-                if mass:
-                    out.card("CMASS2", out.next("element"), mass, node + 1, dof)
+        _inertia(out, group)
     else:
         raise InputError(f"{group.name}: {type(group).__name__} has no card")
+
+
+def _inertia(out: _Writer, group: NodeInertia) -> None:
+    for node, six in zip(group.nodes.tolist(), group.inertia, strict=True):
+        if not out.level_alike(node, six):
+            raise InputError(
+                f"{group.name}: inertia that differs along x and y has no card at node "
+                f"{node + 1}, whose supports are turned"
+            )
+        for dof, mass in enumerate(six.tolist(), start=1):
+            if mass:
+                out.card("CMASS2", out.next("element"), mass, node + 1, dof)
 
 
 def _plates(out: _Writer, card: str, corners: Array, section: Any, name: str) -> None:  # noqa: ANN401
@@ -198,12 +224,13 @@ def _bars(out: _Writer, nodes: Array, group: BeamGroup, released: Array | None) 
     ends = np.zeros((2, 3), dtype=bool) if released is None else released
     # dofs about a member's own x, y and z: y is the axis of bending in plane 1, about z there
     pins = ["".join(p for p, let in zip("465", end, strict=True) if let) for end in ends]
-    off = group.offset.tolist() if np.any(group.offset) else [None] * 3
     _, frames = beam_frames(nodes[group.elements], group.up)
-    for (first, last), up in zip((group.elements + 1).tolist(), frames[:, 2].tolist(), strict=True):
-        element = out.next("element")
+    for (first, last), up in zip(group.elements.tolist(), frames[:, 2], strict=True):
+        numbers = out.next("element"), number, first + 1, last + 1
         flags = ["".join(sorted(pin)) or None for pin in pins]
-        out.card("CBAR", element, number, first, last, *up, None, *flags, *off, *off)
+        off = [*out.own(first, group.offset), *out.own(last, group.offset)]
+        off = off if np.any(group.offset) else [None] * 6
+        out.card("CBAR", *numbers, *out.own(first, up), None, *flags, *off)
 
 
 def _bar_property(out: _Writer, number: int, section: BeamSection) -> None:
@@ -215,15 +242,44 @@ def _bar_property(out: _Writer, number: int, section: BeamSection) -> None:
     out.card("PBAR", *fields, 0.0, None, *[None] * 8, *k)
 
 
-def _springs(out: _Writer, group: SpringGroup) -> None:
+def _springs(out: _Writer, nodes: Array, group: SpringGroup) -> None:
     for first, last in group.elements.tolist():
+        if not _along_own(out, group, (first, last)):
+            _bush(out, nodes, group, (first, last))
+            continue
         for dof, k in enumerate(group.stiffness.tolist(), start=1):
             if k:
                 other = (None, None) if last == GROUND else (last + 1, dof)
                 out.card("CELAS2", out.next("element"), k, first + 1, dof, *other)
 
 
+def _along_own(out: _Writer, group: SpringGroup, ends: tuple[int, int]) -> bool:
+    """Return whether a spring is along the axes in which its nodes move, dof by dof."""
+    turned = any(out.angle(node) for node in ends if node != GROUND)
+    return not turned or not group.stiffness[[0, 1, 3, 4]].any()
+
+
+def _bush(out: _Writer, nodes: Array, group: SpringGroup, ends: tuple[int, int]) -> None:
+    """Write a spring along the basic axes, at a node that moves along others."""
+    first, last = ends
+    if last != GROUND and np.ptp(nodes[[first, last]], axis=0).max() > 0.0:
+        raise InputError(
+            f"{group.name}: a spring between two places has no card at nodes {first + 1} and "
+            f"{last + 1}, whose supports are turned"
+        )
+    number, other = out.next("property"), None if last == GROUND else last + 1
+    out.card("PBUSH", number, "K", *group.stiffness.tolist())
+    out.card("CBUSH", out.next("element"), number, first + 1, other, None, None, None, 0)
+
+
 def _link(out: _Writer, link: RigidLinks) -> None:
+    tied = link.dofs.astype(float)
+    aslant = [node + 1 for node in link.follows.tolist() if not out.level_alike(node, tied)]
+    if aslant:
+        raise InputError(
+            f"a rigid link along x or y alone has no card at node {aslant[0]}, whose supports are "
+            "turned"
+        )
     dofs = "".join(str(i) for i, tied in enumerate(link.dofs, start=1) if tied)
     for lead in np.unique(link.leads).tolist():
         behind = (link.follows[link.leads == lead] + 1).tolist()

@@ -223,7 +223,8 @@ class BeamGroup:
     offset : ndarray of float, shape (3,)
         From node to centroid in global axes [m].
     up : ndarray of float, shape (3,)
-        Direction of the section's depth; members parallel to it use global x instead.
+        Direction of the section's depth; members parallel to it use global x instead, and global z
+        where they are along x.
     name : str
         What the group is: ``beam``, ``column`` ...
     """

@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float, Int
 from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
+from trundle.structure.elements.protocol import GROUND
 
 __all__ = ["SpringGroup"]
 
@@ -21,7 +22,7 @@ class SpringGroup:
     Attributes
     ----------
     elements : ndarray of int, shape (n_springs, 2)
-        Node numbers; `GROUND` (-1) as the second stands for rigid ground.
+        Node numbers; `GROUND` (-1) stands for rigid ground, and becomes the second.
     stiffness : ndarray of float, shape (6,)
         Stiffness in each global dof [N/m], [N m/rad].
     name : str
@@ -37,7 +38,12 @@ class SpringGroup:
         stiffness = frozen_array("spring stiffness", self.stiffness, shape=(6,))
         if np.any(stiffness < 0.0):
             raise InputError(f"spring stiffness must be 0 or more; got {stiffness.tolist()}")
-        elements = frozen_array("elements", self.elements, shape=(None, 2), dtype=np.intp)
+        elements = np.array(self.elements, dtype=np.intp)
+        if elements.ndim == 2 and elements.shape[1] == 2:
+            elements[elements[:, 0] == GROUND] = elements[elements[:, 0] == GROUND, ::-1]
+            if np.any(elements[:, 0] == GROUND):
+                raise InputError("a spring needs a node at one end; got ground at both")
+        elements = frozen_array("elements", elements, shape=(None, 2), dtype=np.intp)
         set_frozen(self, elements=elements, stiffness=stiffness)
 
     @property

@@ -38,6 +38,7 @@ ETA = np.array([-1.0, -1.0, 1.0, 1.0])
 
 _NEWTON_STEPS = 8
 _FOLD = 1e-9  # of its size squared: a determinant below that is none
+_ARRIVED = 1e-5  # of an element's extent, by which the last step may miss a place
 _EDGE = 1e-6  # of its length, that a place may lie beside a line
 
 
@@ -49,7 +50,8 @@ class Located(NamedTuple):
     local : ndarray of float, shape (n, 2)
         The element's own coordinates, moved onto it if they lie outside.
     outside : ndarray of float, shape (n,)
-        By how much a place lies outside, in shares of the element; 0 or less inside.
+        By how much a place lies outside, in shares of the element; 0 or less inside, infinite
+        where it lies so far out that nothing in the element's own coordinates leads to it.
     """
 
     local: Float[Array, "n 2"]
@@ -164,16 +166,26 @@ def quad_locate(corners: Float[Array, "n 4 2"], places: Float[Array, "n 2"]) -> 
     # the same number of steps for all, so that it does not matter which are looked up together
     for _ in range(_NEWTON_STEPS):
         xi, eta = local[:, :1], local[:, 1:]
-        shape = 0.25 * (1 + xi * XI) * (1 + eta * ETA)
         slopes = (0.25 * XI * (1 + eta * ETA), 0.25 * ETA * (1 + xi * XI))
-        gap = places - np.einsum("na,naj->nj", shape, corners)
+        gap = _quad_gap(local, corners, places)
         jacobian = np.stack([np.einsum("na,naj->nj", d, corners) for d in slopes], axis=2)
         # a convex element folds nowhere in itself: who stands on a fold is outside, and stays there
         folded = np.abs(np.linalg.det(jacobian)) < _FOLD * np.abs(jacobian).max(axis=(1, 2)) ** 2
         jacobian[folded], gap[folded] = np.eye(2), 0.0
         step = np.linalg.solve(jacobian, gap[:, :, None])[:, :, 0]
         local = np.clip(local + step, -4.0, 4.0)
-    return Located(np.clip(local, -1.0, 1.0), np.abs(local).max(axis=1) - 1.0)
+    # Within a convex element the steps arrive; from a place outside they may still wander, through
+    # coordinates of the inside too.
+    missed = np.abs(_quad_gap(local, corners, places)).max(axis=1)
+    lost = missed > _ARRIVED * np.ptp(corners, axis=1).max(axis=1)
+    outside = np.where(lost, np.inf, np.abs(local).max(axis=1) - 1.0)
+    return Located(np.clip(local, -1.0, 1.0), outside)
+
+
+def _quad_gap(local: Array, corners: Array, places: Array) -> Array:
+    """Return the way from where coordinates of elements are to places [m]."""
+    shape = 0.25 * (1 + local[:, :1] * XI) * (1 + local[:, 1:] * ETA)
+    return places - np.einsum("na,naj->nj", shape, corners)
 
 
 def line_locate(corners: Float[Array, "n 2 2"], places: Float[Array, "n 2"]) -> Located:

@@ -14,6 +14,7 @@ from studies import GOOD, MAP
 from trundle.errors import FitnessWarning, InputError, StudyError
 from trundle.mitigate import Change
 from trundle.report.html import embedded
+from trundle.results import folder as kept_folder
 from trundle.results.codec import keep_value, kept_value, pack, unpack
 from trundle.results.field_kinds import fields_hold
 from trundle.results.kept import write_kept
@@ -202,7 +203,7 @@ def test_results_that_a_stranger_made_up_are_refused_by_name(done, tmp_path):
             out = tmp_path / f"{name}-{i}"
             shutil.copytree(written, out)
             (out / ".trundle-results").unlink()
-            keep_value(out / "kept" / name, value, "trundle result 1")
+            keep_value(out / "kept" / name, value, kept_folder._LABEL)
             with pytest.raises(InputError, match=name):
                 tr.read_results(out)
 

@@ -5,9 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 
+from models import small_floor
 from trundle.criteria import VC, Criterion, all_criteria, assess, best_class, find_criterion
 from trundle.errors import InputError
-from trundle.simulate import Runs
+from trundle.road import RoadClass
+from trundle.route import Route
+from trundle.simulate import Coupled, Crossing, Modal, Runs, ensemble
+from trundle.structure import Spot
+from trundle.vehicle import sprung_mass
 
 
 def sine_runs(
@@ -97,6 +102,21 @@ def test_peaks_against_gal():
     assert high.share_exceeding == 0.5
     sideways = assess(runs, find_criterion("electron-microscope-horizontal"))[0]
     assert sideways.status == "not assessed"
+
+
+def test_level_motion_is_held_against_level_limits_alone():
+    """Runs say which points are read along an axis of the plan: 0.6 mm/s2 is above the horizontal
+    limit of 0.5 and below the vertical one of 0.7. People feel 10 Hz by Wd, 0.2 of its base, and
+    not by Wb, 0.9.
+    """
+    one = sine_runs(10.0, 6e-4 / (2 * np.pi * 10.0), n_runs=1)
+    level = dataclasses.replace(one, horizontal=(0,))
+    office = dataclasses.replace(find_criterion("R-office"), axis="each axis")
+    names = ("electron-microscope-vertical", "electron-microscope-horizontal")
+    up, side, felt = assess(level, [*(find_criterion(name) for name in names), office])
+    assert (up.status, side.status, side.axis) == ("not assessed", "fail", "horizontal")
+    assert side.margin == pytest.approx(0.5 / 0.6, rel=1e-3)
+    assert felt.value < 0.5 * assess(one, office)[0].value
 
 
 def test_unknown_criteria_are_named():
@@ -232,3 +252,20 @@ def test_what_lies_below_all_bands_is_not_passed():
     verdict = assess(sine_runs(10.0, 1e-12), curve)[0]
     assert verdict.status == "not assessed"
     assert verdict.unresolved == (0.5, 0.63, 0.8)
+
+
+def test_an_ensemble_knows_which_of_its_points_are_read_sideways():
+    """A spot along x among vertical ones: held against limits of its own direction, as in studies."""
+    floor = small_floor(mesh_size=2.0)
+    drive = Crossing(sprung_mass(mass=1000.0, stiffness=1e6, damping=5e3),
+                     Route.straight((0.0, 3.0), (12.0, 3.0), speed=4.0), RoadClass("B"))  # fmt: skip
+    runs = ensemble(
+        floor, drive, method=Coupled(integration=Modal(f_max=30.0, dt=0.01)), n_runs=1, seed=1,
+        points={"up": (6.0, 3.0), "x": Spot(x=6.0, y=3.0, axis="x")}, duration=1.0,
+    )  # fmt: skip
+    assert (runs.horizontal, runs.ways) == ((1,), ("vertical", "horizontal"))
+    microscope = find_criterion("electron-microscope-vertical")
+    up, side = assess(runs, microscope)
+    assert np.isfinite(up.margin)
+    assert side.status == "not assessed"
+    assert np.isnan(side.margin)

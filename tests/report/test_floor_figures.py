@@ -183,3 +183,16 @@ def test_a_margin_map_has_its_line_at_one(result):
     margin = view.classes.margin[view.classes.index("VC-A")]
     np.testing.assert_allclose(shown, np.clip(margin, 0.1, 10.0))
     assert "VC-A" in figure.axes[-1].get_xlabel()
+
+
+def test_a_floor_without_columns_does_not_speak_of_them(result):
+    """A plan that stands on its edges alone: neither its section nor the captions."""
+    edges = dict.fromkeys(("x_min", "x_max", "y_min", "y_max"), "simple")
+    plan = small_plan(column=None, edges=edges)
+    (axes,) = floor_figures.section_figure(plan).axes
+    assert "columns" not in axes.get_title()
+    study = replace(result.study, plan=plan)
+    found = {d.name: d for d in floor_figures.drawings(replace(result, study=study))}
+    assert "columns" not in found["plan"].caption + found["section"].caption
+    found = {d.name: d for d in floor_figures.drawings(result)}
+    assert "columns (squares)" in found["plan"].caption

@@ -1,18 +1,22 @@
 """Histories, spectra, peaks and roads in pictures: the numbers, units and names that they show."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from hand_made import result_of, study_of
 from jinja2 import UndefinedError
+from matplotlib import rc_context
 
 import trundle as tr
-from studies import GOOD
+from studies import BUILDING, GOOD
 from trundle.criteria import find_criterion
-from trundle.report.canvas import Drawing, class_colours, make_logarithmic, new_figure
+from trundle.report.canvas import STYLE, Drawing, class_colours, make_logarithmic, new_figure
 from trundle.report.figures import response, road
 from trundle.report.html import embedded, template
 from trundle.road import CLASS_NAMES, RoadClass
+from trundle.study.plans import Case
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 TWO = """
@@ -180,3 +184,52 @@ def test_classes_have_colours_of_their_own(n):
     colours = class_colours(n)
     assert len(set(colours)) == n
     assert colours[0] == "#d9d9d9"
+
+
+SIDEWAYS = BUILDING.replace('at = ["4 m", "3 m"]', 'at = ["4 m", "3 m"]\naxes = ["z", "x"]')
+
+
+def test_a_point_is_drawn_beside_the_limits_on_its_own_motion():
+    """0.07 gal upright and 0.05 gal sideways; a curve for upright motion is not at a level point."""
+    curves = '["electron-microscope-horizontal", "electron-microscope-vertical"]'
+    study = tr.study_from_text(SIDEWAYS + f'\n[criteria]\nmethod = "coupled"\ncurves = {curves}\n')
+    up = replace(find_criterion("VC-A"), name="up", title="up", axis="vertical")
+    some = (*study.assessment.criteria, up)
+    study = replace(study, assessment=replace(study.assessment, criteria=some))
+    found = {one.name: one for one in response.drawings(result_of(study))}
+    words = {
+        name: [text.get_text() for text in one.draw().axes[0].texts]
+        for name, one in found.items()
+        if name.startswith("criteria")
+    }
+    assert words == {
+        "criteria_acceleration": ["Electron microscope, vertical, 0.07 gal"],
+        "criteria_velocity_1": ["up"],
+        "criteria_acceleration_2": ["Electron microscope, horizontal, 0.05 gal"],
+        "criteria_velocity_1_2": [],
+    }
+
+
+@pytest.fixture
+def many():
+    study = study_of()
+    cases = tuple(Case(name=f"articulated route {i}", routes=("main",)) for i in range(12))
+    with rc_context(STYLE):
+        yield {d.name: d for d in response.drawings(result_of(replace(study, cases=cases)))}
+
+
+def test_a_legend_of_many_cases_is_in_the_picture(many):
+    """Twelve names in one row would be cut off at both ends."""
+    figure = many["criteria_velocity_1"].draw()
+    figure.canvas.draw()
+    box = figure.legends[0].get_window_extent()
+    assert box.x0 >= 0.0
+    assert box.x1 <= figure.bbox.width
+    assert len(figure.legends[0].get_texts()) == 12
+
+
+def test_lines_of_many_cases_are_told_apart(many):
+    """There are eight colours: from the ninth case on lines are dashed."""
+    (axes,) = many["criteria_velocity_1"].draw().axes
+    lines = [line for line in axes.lines if str(line.get_label()).startswith("articulated")]
+    assert len({(line.get_color(), line.get_linestyle()) for line in lines}) == 12

@@ -24,7 +24,7 @@ from trundle.response import (
 from trundle.signals import TOP_FREQUENCY, Averaging, nominal_frequency
 from trundle.simulate import Coverage, Runs
 
-__all__ = ["assess", "assess_reduced", "best_class", "spectra_asked_for"]
+__all__ = ["assess", "assess_reduced", "best_class", "single_numbers", "spectra_asked_for"]
 
 
 @kinds_checked
@@ -41,7 +41,7 @@ def assess(
     Parameters
     ----------
     runs : Runs
-        The ensemble.
+        The ensemble; each point is held against the limits of the direction it is read in.
     criteria : Criterion or sequence of Criterion
         The curves.
     percentile : float
@@ -64,6 +64,7 @@ def assess(
         f_resolved=runs.f_resolved,
         events=events,
         coverage=runs.coverage,
+        axes=runs.ways,
     )
 
 
@@ -102,10 +103,11 @@ def assess_reduced(
     coverage : Coverage, optional
         Which bands the road excites, and whether the vehicles have left; without it all do.
     axes : sequence of {"vertical", "horizontal", ""}, optional
-        Directions of measured points; computed ones are vertical, and so is what is not known.
+        Directions of the points, as `Runs.ways` gives them; vertical is what is not known, and all
+        unless given.
     """
     coverage = coverage or Coverage()
-    ways = axes or ("",) * len(reduced.spectra.point_names)
+    ways = ("",) * len(reduced.spectra.point_names) if axes is None else axes
     within("percentile", percentile, 0.0, 100.0)
     many = (criteria,) if isinstance(criteria, Criterion) else tuple(criteria)
     verdicts = []
@@ -152,13 +154,21 @@ def _numbers(
     reduced: RunLevels, point: int, criterion: Criterion, events: float
 ) -> tuple[Array, Array]:
     """Return a single number of every run, and when it occurred."""
+    values = single_numbers(reduced, point, criterion, events)
     if criterion.quantity == "peak_acceleration":
-        return reduced.peak_acceleration[:, point], reduced.peak_time[:, point]
-    if criterion.quantity == "vdv":
-        values = events**0.25 * reduced.vdv[:, point]
-    else:
-        values = reduced.response_factor[:, point]
+        return values, reduced.peak_time[:, point]
     return values, np.full_like(values, np.nan)
+
+
+def single_numbers(
+    reduced: RunLevels, point: int, criterion: Criterion, events: float
+) -> Float[Array, " runs"]:
+    """Return what a criterion of a single number is held against, of every run at a point.
+
+    The dose of many equal events is that of one times the fourth root of their number.
+    """
+    values = reduced.numbers[criterion.quantity][:, point]
+    return events**0.25 * values if criterion.quantity == "vdv" else values
 
 
 def _by_band(
@@ -175,15 +185,16 @@ def _by_band(
     excited = coverage.excites(spectra.mid_band)
     values = spectra.values[:, point]
     known = spectra.resolved
-    level = np.full(len(limits), np.nan)
-    level[known] = np.percentile(values[:, known], percentile, axis=0)
+    _refuse_non_finite(values[:, asked & known], criterion, name)
+    level, finite = np.full(len(limits), np.nan), known & np.isfinite(values).all(axis=0)
+    level[finite] = np.percentile(values[:, finite], percentile, axis=0)
     # where some of several sources excite, what they give is a lower bound: it can fail
     louder = np.nan_to_num(level) > np.where(asked, limits, np.inf)
     usable = asked & known & (excited | (louder & coverage.excites_partly(spectra.mid_band)))
     missing = _missing(spectra, criterion, asked)
     unexcited = _named(spectra, spectra.mid_band[asked & spectra.resolved & ~excited])
-    _refuse_non_finite(values[:, usable], criterion, name)
     reasons = (
+        *_between(criterion, asked=bool(asked.any() or missing)),
         *_not_shown(missing),
         *coverage.reasons(waves=bool(unexcited)),
         *_still(values[:, usable]),
@@ -249,6 +260,14 @@ def _named(spectra: BandSpectra, frequencies: Array) -> tuple[float, ...]:
     return tuple(nominal_frequency(f) for f in frequencies)
 
 
+def _between(criterion: Criterion, *, asked: bool) -> tuple[str, ...]:
+    """Say that a curve asks for nothing: it lies between two bands."""
+    if asked:
+        return ()
+    first, last = criterion.frequencies[[0, -1]]
+    return (f"no band has its middle within the curve, {first:g} to {last:g} Hz: draw it on",)
+
+
 def _not_shown(missing: tuple[float, ...]) -> tuple[str, ...]:
     """Say which bands step or modes do not show."""
     if not missing:
@@ -301,10 +320,8 @@ def _by_number(
     value = float(np.percentile(values, percentile))
     margin = limit / max(value, np.finfo(float).tiny)
     # A broadband number covers the curve only as far as the computation reaches.
-    (f_resolved, coverage), asked = (
-        reach,
-        float(min(criterion.frequencies[-1], TOP_FREQUENCY)) * (1 - 1e-6),
-    )
+    f_resolved, coverage = reach
+    asked = float(min(criterion.frequencies[-1], TOP_FREQUENCY)) * (1 - 1e-6)
     missing = () if f_resolved >= asked else (round(asked, 1),)
     unexcited = () if coverage.excited_to >= asked else (round(asked, 1),)
     reasons = (

@@ -12,7 +12,7 @@ from trundle._checks import within
 from trundle._typing import Array
 from trundle.criteria.curve import Criterion
 from trundle.criteria.verdict import STILL
-from trundle.errors import InputError
+from trundle.errors import ComputationError, InputError
 from trundle.response import FloorMap
 from trundle.signals import TOP_FREQUENCY
 from trundle.simulate import Coverage
@@ -128,6 +128,8 @@ def class_map(
     level = np.zeros(len(floor.places), dtype=bool) if level is None else level
     for_motion = {"horizontal": level, "vertical": ~level, "each axis": np.ones_like(level)}
     some = tuple(c for c in criteria if c.quantity in _MAPPED and for_motion[c.axis].any())
+    if np.isinf(floor.band_levels).any():
+        raise ComputationError("a level on the map is infinite; the motion there has overflowed")
     levels = np.percentile(floor.band_levels, percentile, axis=0)
     found = [
         _by_band(floor, levels, c, reach)
@@ -136,7 +138,7 @@ def class_map(
         for c in some
     ]
     shape = (len(some), len(floor.places))
-    applies = np.reshape([for_motion[c.axis] for c in some], shape)
+    applies = np.array([for_motion[c.axis] for c in some], dtype=bool).reshape(shape)
     numbers = np.array([one[:3] for one in found], dtype=float).reshape(len(some), 3, len(level))
     margin, band, share = np.where(applies[:, None], numbers, np.nan).transpose(1, 0, 2)
     return ClassMap(

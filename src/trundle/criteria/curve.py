@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
@@ -27,6 +28,7 @@ __all__ = [
     "all_criteria",
     "find_criterion",
     "shaped",
+    "told_apart",
 ]
 
 Quantity: TypeAlias = SpectrumQuantity | Literal["peak_acceleration", "response_factor", "vdv"]
@@ -81,24 +83,37 @@ class Criterion:
     aliases: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Freeze the corners; the last may be at infinity."""
-        frequencies = np.array(self.frequencies, dtype=float)
-        if len(frequencies) and (
-            frequencies[0] < 0.0 or (frequencies[0] == 0.0 and len(set(self.limits)) > 1)
-        ):
-            raise InputError(
-                f"criterion {self.name!r}: frequencies must be above 0, for limits are straight on "
-                "logarithmic axes"
-            )
+        """Freeze the corners; the last of a level end may be at infinity."""
         one_of("axis", self.axis, ("vertical", "horizontal", "each axis"))
-        if len(frequencies) < 2 or np.any(np.diff(frequencies) <= 0.0):
-            raise InputError(f"criterion {self.name!r}: frequencies must rise")
-        frequencies.setflags(write=False)
         one_of("quantity", self.quantity, (*BY_FREQUENCY, *_SINGLE))
+        frequencies = np.array(self.frequencies, dtype=float)
+        if len(frequencies) < 2 or not np.all(frequencies[1:] > frequencies[:-1]):
+            raise InputError(f"criterion {self.name!r}: frequencies must rise, and be numbers")
+        frequencies.setflags(write=False)
         limits = frozen_array("limits", self.limits, shape=frequencies.shape)
         if np.any(limits <= 0.0):
             raise InputError(f"criterion {self.name!r}: limits must be greater than 0")
         set_frozen(self, frequencies=frequencies, limits=limits)
+        self._check_shape()
+
+    def _check_shape(self) -> None:
+        """Refuse limits that no straight line on logarithmic axes joins, or nothing compares."""
+        frequencies, differ = self.frequencies, bool(np.ptp(self.limits) > 0.0)
+        if frequencies[0] < 0.0 or (frequencies[0] == 0.0 and differ):
+            raise InputError(
+                f"criterion {self.name!r}: frequencies must be above 0, for limits are straight on "
+                "logarithmic axes"
+            )
+        if np.isinf(frequencies[-1]) and self.limits[-1] != self.limits[-2]:
+            raise InputError(
+                f"criterion {self.name!r}: no line goes from {self.limits[-2]:g} to "
+                f"{self.limits[-1]:g} at infinity; give the frequency where it ends"
+            )
+        if self.quantity in _SINGLE and differ:
+            raise InputError(
+                f"criterion {self.name!r}: a {self.quantity} is one number and has one limit; got "
+                f"{self.limits.min():g} and {self.limits.max():g}: give a criterion for each"
+            )
 
     def limit(self, f: Float[Array, " lines"]) -> Float[Array, " lines"]:
         """Return the limit at frequencies [Hz]; NaN outside the curve's range."""
@@ -151,6 +166,18 @@ def shaped(criteria: Iterable[Criterion], shape: Shape) -> tuple[Criterion, ...]
     """
     one_of("shape", shape, get_args(Shape))
     return tuple(c.flattened() if shape == "flat" and c.rises else c for c in criteria)
+
+
+def told_apart(criteria: Iterable[Criterion]) -> tuple[Criterion, ...]:
+    """Return criteria whose titles differ: to a title that several have each adds its name.
+
+    A user's curve may be titled as one that ships with trundle, and readers go by titles.
+    """
+    every = tuple(criteria)
+    titles = Counter(c.title for c in every)
+    return tuple(
+        replace(c, title=f"{c.title} ({c.name})") if titles[c.title] > 1 else c for c in every
+    )
 
 
 @cache

@@ -12,7 +12,7 @@ from trundle._typing import Array
 from trundle.criteria.curve import Criterion
 from trundle.signals import nominal_frequency
 
-__all__ = ["STILL", "BandOutcomes", "Status", "Verdict"]
+__all__ = ["STILL", "BandOutcomes", "Status", "Verdict", "frequency_name"]
 
 STILL = 1e-12
 """Level [m/s, m/s2] below which nothing moves under a vehicle, and no sensor sees it."""
@@ -122,7 +122,9 @@ class Verdict:
         """State outcome, margin, its interval and band in a few words."""
         if np.isnan(self.margin):
             return self.status
-        at = "" if np.isnan(self.governing_band) else f" at {_hertz(self.governing_band)} Hz"
+        at = (
+            "" if np.isnan(self.governing_band) else f" at {frequency_name(self.governing_band)} Hz"
+        )
         low, high = self.interval
         between = f" ({low:.3g} to {high:.3g})" if np.isfinite(low) and 0.0 < low < high else ""
         few = ", too few runs to be sure" if low == 0.0 else ", not surely"
@@ -135,7 +137,7 @@ class Verdict:
         return f"{self.point} {self.axis}, {self.criterion.title}: {self.words}{why}"
 
 
-def _hertz(f: float) -> str:
-    """Write a mid-band frequency by its name, another as it is."""
-    name = nominal_frequency(f)
-    return f"{name if abs(name - f) < 0.03 * f else f:.3g}"
+def frequency_name(f: float) -> str:
+    """Write a mid-band frequency [Hz] by its name, and another, of a line, as it is."""
+    middle = 10.0 ** (round(10.0 * np.log10(f)) / 10.0)
+    return f"{nominal_frequency(f) if abs(f - middle) < 0.003 * f else f:.3g}"

@@ -53,7 +53,12 @@ def _limit(
     limits = criterion.limit(bands)
     asked = np.isfinite(limits)
     known = usable_bands(bands, fs) & (band_edges(bands)[:, 1] <= f_max) & coverage.excites(bands)
-    whole = not (asked & ~known).any() and not len(criterion.bands_beyond()) and coverage.left
+    whole = (
+        asked.any()
+        and not (asked & ~known).any()
+        and not len(criterion.bands_beyond())
+        and coverage.left
+    )
     return (
         CurveLimit(
             name=criterion.name,

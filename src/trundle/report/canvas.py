@@ -2,23 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
 from matplotlib import colormaps, rc_context
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
 
-__all__ = ["COLOURS", "STYLE", "Drawing", "class_colours", "make_logarithmic", "new_figure"]
+__all__ = [
+    "COLOURS",
+    "STYLE",
+    "Drawing",
+    "class_colours",
+    "legend_below",
+    "line_look",
+    "make_logarithmic",
+    "new_figure",
+]
 
 # Okabe and Ito's palette (2008), told apart by nearly everybody.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F")
+
+_DASHES = ("-", "--", ":", "-.")
+_LONGEST = 80  # letters of a name in a row of a legend
+_LEGEND_ROW = 0.17  # inch
 
 STYLE: dict[Any, Any] = {
     "font.size": 9.0,
@@ -76,6 +91,36 @@ def new_figure(
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, squeeze=False, sharex="x" in share, sharey="y" in share)
     return figure, list(axes.ravel())
+
+
+def line_look(number: int) -> tuple[str, str]:
+    """Return colour and style of a line: 32 of them are told apart."""
+    return COLOURS[number % len(COLOURS)], _DASHES[number // len(COLOURS) % len(_DASHES)]
+
+
+def legend_below(
+    figure: Figure,
+    handles: Sequence[Artist],
+    labels: Sequence[str],
+    *,
+    columns: int,
+    title: str = "",
+) -> None:
+    """Put a legend below a figure, of as many columns as it has room for.
+
+    Names come from outside and may be long: those of a legend that is wider than its figure would
+    be cut off at both ends.
+    """
+    words = [fill(label, _LONGEST) for label in labels]
+    for n in range(min(columns, max(len(words), 1)), 0, -1):
+        legend = figure.legend(
+            handles, words, loc="outside lower center", ncols=n, title=title or None
+        )
+        if n == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            rows = -(-len(words) // n)
+            figure.set_figheight(figure.get_figheight() + _LEGEND_ROW * max(0, rows - 3))
+            return
+        legend.remove()
 
 
 def make_logarithmic(axes: Axes, which: str) -> None:

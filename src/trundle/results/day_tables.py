@@ -34,7 +34,7 @@ def day_table(result: StudyResult) -> Iterator[dict[str, Any]]:
             "road": row.key.road,
             "point": row.point,
             "criterion": row.criterion.name,
-            "bound": "" if row.complete else "lower",
+            "bound": "" if row.complete or np.isnan(expected.events) else "lower",
             "events_per_day": expected.events,
             "events_low": expected.events_interval[0],
             "events_high": expected.events_interval[1],
@@ -89,8 +89,9 @@ def hour_table(result: StudyResult) -> Iterator[dict[str, Any]]:
             run, seconds = np.nan, np.nan
             if row.day is not None:
                 criterion, point = row.place
-                run = float(row.day.events[hour, criterion, point])
                 seconds = float(row.day.seconds_above[hour, criterion, point])
+                if np.isfinite(seconds):  # else it has no running level, and nobody counted
+                    run = float(row.day.events[hour, criterion, point])
             yield {
                 "schedule": row.key.schedule,
                 "road": row.key.road,

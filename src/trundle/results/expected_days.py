@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,7 +33,7 @@ class DayRow:
     criterion : Criterion
         The curve.
     expected : Expected
-        Means with their intervals.
+        Means with their intervals; NaN where nothing that the criterion asks for is known.
     complete : bool
         Whether everything that the criterion asks for was computed for every route; else what lies
         above it is a lower bound.
@@ -124,19 +124,35 @@ def day_rows(result: StudyResult) -> Iterator[DayRow]:
                 for criterion in assessment.criteria:
                     if criterion.axis not in {way, "each axis"} or criterion.quantity == "vdv":
                         continue  # doses of days are held by `day_doses`
-                    found = [_passage(cell, criterion, i) for cell in cells.values()]
+                    found = {r: _passage(cell, criterion, i) for r, cell in cells.items()}
                     yield DayRow(
                         key=DayKey(name, road),
                         point=point,
                         criterion=criterion,
-                        expected=expected_day(
-                            {r: one for r, (one, _) in zip(cells, found, strict=True)},
-                            schedule.expected(),
-                            random=schedule.is_random,
-                        ),
-                        complete=all(whole for _, whole in found),
+                        expected=_expected(schedule, found),
+                        complete=all(whole for _, whole in found.values()),
                         day=result.days.get(DayKey(name, road)),
                     )
+
+
+def _expected(schedule: Schedule, found: Mapping[str, tuple[OnePassage | None, bool]]) -> Expected:
+    """Return what to expect; of a route of which nothing is known, what the others give."""
+    passages = {route: one for route, (one, _) in found.items() if one is not None}
+    counts = {
+        r: hours for r, hours in schedule.expected().items() if r not in set(found) - set(passages)
+    }
+    if passages:
+        return expected_day(passages, counts, random=schedule.is_random)
+    nothing = (np.nan, np.nan)
+    return Expected(
+        events=np.nan,
+        events_interval=nothing,
+        events_on_days=nothing,
+        any_event=np.nan,
+        by_hour=np.full(24, np.nan),
+        minutes=np.nan,
+        minutes_interval=nothing,
+    )
 
 
 def _cells(result: StudyResult, schedule: Schedule, road: str) -> dict[str, Cell]:
@@ -148,8 +164,11 @@ def _cells(result: StudyResult, schedule: Schedule, road: str) -> dict[str, Cell
     }
 
 
-def _passage(cell: Cell, criterion: Criterion, point: int) -> tuple[OnePassage, bool]:
-    """Return one passage beside a criterion, and whether all that this asks for is known."""
+def _passage(cell: Cell, criterion: Criterion, point: int) -> tuple[OnePassage | None, bool]:
+    """Return one passage beside a criterion, and whether all that this asks for is known.
+
+    None stands for a passage of which nothing is known that the criterion asks for.
+    """
     levels, reach = cell.reduced, cell.coverage
     seconds = levels.above[criterion.name][:, point]
     if criterion.quantity in BY_FREQUENCY:
@@ -160,8 +179,11 @@ def _passage(cell: Cell, criterion: Criterion, point: int) -> tuple[OnePassage, 
         lines = criterion.quantity == "narrow_band_acceleration"
         beyond = not lines and len(criterion.bands_beyond()) > 0
         whole = not (asked & ~known).any() and not beyond
+        if not known.any():
+            return None, False
         exceeds = (spectra.values[:, point, known] > limits[known]).any(axis=1)
-        if spectra.averaging != "max_1s":  # a day is read by the running level of 1 s
+        read = bool(np.isfinite(seconds).all())  # narrow lines have no running level
+        if read and spectra.averaging != "max_1s":  # a day is read by that of 1 s
             exceeds = seconds > 0.0
     else:
         top = float(min(criterion.frequencies[-1], TOP_FREQUENCY)) * (1 - 1e-6)

@@ -8,12 +8,15 @@ them is ever executed: see `codec`.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence, Set
+from dataclasses import astuple
+from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from trundle.criteria import Verdict
 from trundle.errors import InputError
-from trundle.results.cells import Cell, DayKey
+from trundle.results.cells import Cell, CellKey, DayKey
 from trundle.results.codec import keep_value, kept_value
 from trundle.results.field_kinds import holds
 from trundle.results.kept_index import KeptIndex
@@ -30,6 +33,7 @@ _LABEL = "trundle result 2"
 _CELL = tuple[Cell, tuple[Verdict, ...] | None]
 _MAP = tuple[MapKey, StudyMap]
 _DAY = tuple[DayKey, Day]
+_Key = TypeVar("_Key", CellKey, MapKey, DayKey)
 
 
 def keep_result(result: StudyResult, folder: Path) -> None:
@@ -92,7 +96,13 @@ def index_of(folder: Path) -> KeptIndex:
         )
     check_unchanged(folder, _FOLDER)
     index = _read(folder, "index", KeptIndex)
-    text = (folder / "study.toml").read_bytes()
+    try:
+        text = (folder / "study.toml").read_bytes()
+    except OSError:
+        raise InputError(
+            f"{folder / 'study.toml'}: cannot be read, and results say nothing without their "
+            "study; put it back, or run the study again"
+        ) from None
     if hashlib.sha256(text).hexdigest() != index.study:
         raise InputError(f"{folder / 'study.toml'}: is not the study that was run there")
     return index
@@ -116,16 +126,51 @@ def read_result(folder: Path, index: KeptIndex, study: Study) -> StudyResult:
         The study in the folder, read again.
     """
     cells = [_read(folder, f"cell{i:04d}", _CELL) for i in range(index.cells)]
+    maps = [_read(folder, f"map{i:04d}", _MAP) for i in range(index.maps)]
+    days = [_read(folder, f"day{i:04d}", _DAY) for i in range(index.days)]
+    of_study = _keys_of(study)
+    _check_keys(folder, "cell", [cell.key for cell, _ in cells], of_study[0], every=True)
+    _check_keys(folder, "map", [key for key, _ in maps], of_study[1])
+    _check_keys(folder, "day", [key for key, _ in days], of_study[2])
     return StudyResult(
         study=study,
         cells={cell.key: cell for cell, _ in cells},
         verdicts={cell.key: verdicts for cell, verdicts in cells if verdicts is not None},
-        maps=dict(_read(folder, f"map{i:04d}", _MAP) for i in range(index.maps)),
-        days=dict(_read(folder, f"day{i:04d}", _DAY) for i in range(index.days)),
+        maps=dict(maps),
+        days=dict(days),
         modes=index.modes,
         mesh=index.mesh,
         provenance=index.provenance,
     )
+
+
+def _keys_of(study: Study) -> tuple[set[CellKey], set[MapKey], set[DayKey]]:
+    """Return what a study has cells of, and may have maps and days of."""
+    cases, speeds = [case.name for case in study.cases], (study.map.speeds if study.map else ())
+    return (
+        {CellKey(*one) for one in product(cases, study.roads, (m.name for m in study.methods))},
+        {MapKey(*one) for one in product(cases, study.roads, (None, *speeds))},
+        {DayKey(*one) for one in product(study.schedules, study.roads)},
+    )
+
+
+def _check_keys(
+    folder: Path, what: str, found: Sequence[_Key], known: Set[_Key], *, every: bool = False
+) -> None:
+    """Refuse a file that is sound and stands in another's place: a result would lack that one."""
+    for i, key in enumerate(found):
+        if key not in known or key in found[:i]:
+            why = "is held by another file too" if key in known else "is none of the study"
+            words = ", ".join(str(part) for part in astuple(key) if part is not None)
+            raise InputError(
+                f"{folder / _FOLDER / f'{what}{i:04d}'}: is of {words!r}, which {why}; run the "
+                "study again"
+            )
+    if every and len(found) < len(known):
+        raise InputError(
+            f"{folder / _FOLDER}: holds {len(found)} of {len(known)} {what}s of the study; run it "
+            "again"
+        )
 
 
 def _read(folder: Path, name: str, hint: Any) -> Any:  # noqa: ANN401 - whatever was kept

@@ -39,9 +39,12 @@ def write_kept(file: Path, arrays: Mapping[str, Array], label: str, said: Any = 
         What goes with them, as JSON takes it.
     """
     packed = io.BytesIO()
-    named: dict[str, Any] = {name: np.ascontiguousarray(v) for name, v in arrays.items()}
+    named = {name: np.asarray(v, order="C") for name, v in arrays.items()}
     named[_SAID] = np.frombuffer(json.dumps(said).encode(), dtype=np.uint8)
-    np.savez(packed, **named)
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as members:
+        for name, array in named.items():  # as np.savez does, to which some names are arguments
+            with members.open(f"{name}.npy", "w", force_zip64=True) as member:
+                np.lib.format.write_array(member, array, allow_pickle=False)
     data = packed.getvalue()
     number, aside = tempfile.mkstemp(dir=file.parent, prefix=".writing-")
     try:

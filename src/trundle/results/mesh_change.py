@@ -51,11 +51,16 @@ class MeshChange:
         return float(np.abs(coarse / fine - 1.0).max(initial=0.0))
 
     def level_changes(self) -> Float[Array, "cases points bands"]:
-        """Return by what share each level differs; of bands near the loudest of their point."""
+        """Return by what share each level differs; of bands near the loudest of their point.
+
+        NaN stands where nothing moves, and where no level is known.
+        """
         coarse, fine = self.levels
-        loudest = np.nanmax(fine, axis=2, keepdims=True)
+        loudest = np.fmax.reduce(fine, axis=2, keepdims=True)
         matters = fine > 0.1 * loudest  # what is a tenth of the loudest decides nothing
-        return np.where(matters, np.abs(coarse / fine - 1.0), np.nan)
+        share = np.full(fine.shape, np.nan)
+        np.divide(coarse, fine, out=share, where=matters)
+        return np.abs(share - 1.0)
 
 
 def mesh_words(change: MeshChange) -> str:
@@ -73,6 +78,8 @@ def mesh_words(change: MeshChange) -> str:
             f", and band levels by up to {100.0 * np.nanmax(levels):.2g} % "
             f"({change.cases[case]}, {change.points[point]}, {f:g} Hz)"
         )
+    else:
+        text += "; no band level is known on both, so that none was compared"
     return f"{text}; as much again may be left"
 
 
@@ -92,7 +99,15 @@ def mesh_warnings(change: MeshChange | None) -> tuple[FitnessWarning, ...]:
             ),
         )
     levels = change.level_changes()
-    worst = float(np.nanmax(levels)) if np.isfinite(levels).any() else 0.0
+    if not np.isfinite(levels).any():
+        return (
+            FitnessWarning(
+                subject="mesh",
+                message=f"whether levels have settled is not known: {mesh_words(change)}; run the "
+                "study with half the mesh_size before a small margin is relied on",
+            ),
+        )
+    worst = float(np.nanmax(levels))
     settled = _LEFT * worst <= _SETTLED_LEVEL
     if settled and _LEFT * change.frequency_change <= _SETTLED_FREQUENCY:
         return ()

@@ -14,6 +14,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.criteria import BY_FREQUENCY, Verdict
+from trundle.criteria.assessing import single_numbers
 from trundle.results.cells import Cell, CellKey
 from trundle.results.study_result import StudyResult
 
@@ -79,15 +80,18 @@ def together_rows(result: StudyResult) -> Iterator[Together]:
             if key.case != case.name:
                 continue
             cells = [result.cells[CellKey(name, key.road, key.method)] for name in names]
+            events = 1.0 if result.study.assessment is None else result.study.assessment.events
             for verdict in verdicts:
                 if np.isfinite(verdict.margin):
-                    yield _row(key, verdict, dict(zip(names, cells, strict=True)), times)
+                    yield _row(key, verdict, dict(zip(names, cells, strict=True)), times, events)
 
 
-def _row(key: CellKey, verdict: Verdict, cells: Mapping[str, Cell], times: Array) -> Together:
+def _row(
+    key: CellKey, verdict: Verdict, cells: Mapping[str, Cell], times: Array, events: float
+) -> Together:
     """Add up the levels of sources, each as often as it is there."""
     point = next(iter(cells.values())).spectra.point_names.index(verdict.point)
-    levels, limits, bands = _levels(verdict, cells, point)
+    levels, limits, bands = _levels(verdict, cells, point, events)
     weights = times[:, None]
     energy = np.sqrt(np.nansum(weights * levels**2, axis=0))
     total = np.nansum(weights * levels, axis=0)
@@ -112,12 +116,15 @@ def _row(key: CellKey, verdict: Verdict, cells: Mapping[str, Cell], times: Array
 
 
 def _levels(
-    verdict: Verdict, cells: Mapping[str, Cell], point: int
+    verdict: Verdict, cells: Mapping[str, Cell], point: int, events: float
 ) -> tuple[Float[Array, "sources bands"], Float[Array, " bands"], Float[Array, " bands"]]:
-    """Return what the share of runs stays below of each source, with limits and bands."""
+    """Return what the share of runs stays below of each source, with limits and bands.
+
+    A dose is of as many events as that of the verdict, which it stands beside.
+    """
     criterion, share = verdict.criterion, verdict.percentile
     if criterion.quantity not in BY_FREQUENCY:
-        values = [c.reduced.numbers[criterion.quantity][:, point] for c in cells.values()]
+        values = [single_numbers(c.reduced, point, criterion, events) for c in cells.values()]
         levels = np.array([[np.percentile(one, share)] for one in values])
         return levels, np.array([verdict.limit]), np.array([np.nan])
     spectra = [

@@ -21,7 +21,7 @@ from trundle.errors import InputError
 __all__ = ["check_whole", "check_zarr"]
 
 _CODECS = {"blosc"}  # the only one written, and what it unpacks to has a bound
-_DTYPE = re.compile(r"^(?:[<>|][bifu](?:1|2|4|8)|[<>]U\d{1,4}|\|S\d{1,4})$")
+_DTYPE = re.compile(r"^(?:[<>|][bifu](?:1|2|4|8)|[<>]U\d{1,4}|\|S\d{1,4})\Z")
 _LARGEST = 2**33  # bytes of an array
 _LARGEST_CHUNK = 2**31  # bytes, as blosc has it
 _MOST = 50_000_000  # bytes of metadata in one file

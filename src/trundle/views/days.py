@@ -10,9 +10,9 @@ from trundle.results.cells import CellKey, DayKey
 from trundle.results.expected_days import DayDoses, DayRow, day_doses, day_rows
 from trundle.results.study_result import StudyResult
 from trundle.results.together import Together, together_rows
-from trundle.signals import nominal_frequency
 from trundle.traffic import Day, Loudest
 from trundle.units import MICROMETRE_PER_SECOND
+from trundle.views.words import hertz
 
 __all__ = ["DayLine", "DayView", "TogetherLine", "clock", "day_views", "together_lines"]
 
@@ -163,13 +163,15 @@ def _line(row: DayRow) -> DayLine:
     if np.isfinite(expected.minutes):
         minutes = least + _between(expected.minutes, expected.minutes_interval)
     run = "" if np.isnan(row.events_run) else f"{row.events_run:.0f}, {_n(row.minutes_run)} min"
+    known = bool(np.isfinite(expected.events))
+    events = least + _between(expected.events, expected.events_interval)
     return DayLine(
         point=row.point,
         criterion=row.criterion.title,
-        events=least + _between(expected.events, expected.events_interval),
-        minutes=minutes,
-        days=f"{low:.0f} to {high:.0f}",
-        chance=f"{100.0 * expected.any_event:.3g} %",
+        events=events if known else "not assessed",
+        minutes=minutes if known else "",
+        days=f"{low:.0f} to {high:.0f}" if known else "",
+        chance=f"{100.0 * expected.any_event:.3g} %" if known else "",
         run=run,
         loudest=_loudest(row),
         quiet=expected.events == 0.0 and not row.events_run > 0.0,
@@ -198,7 +200,7 @@ def _loudest(row: DayRow) -> str:
 
 def loudest_words(found: Loudest) -> str:
     """Say how large a level was, when, and who was there."""
-    at = "" if np.isnan(found.band) else f" at {nominal_frequency(found.band):g} Hz"
+    at = "" if np.isnan(found.band) else f" at {hertz(found.band)} Hz"
     who = []
     for one in found.present:
         where = "leaving" if np.isnan(one.x) else f"at ({one.x:.1f}, {one.y:.1f}) m"
@@ -215,7 +217,7 @@ def together_lines(result: StudyResult) -> list[TogetherLine]:
 
 
 def _together(row: Together) -> TogetherLine:
-    at = "" if np.isnan(row.band) else f" at {nominal_frequency(row.band):g} Hz"
+    at = "" if np.isnan(row.band) else f" at {hertz(row.band)} Hz"
     share = row.shares.get(row.governs, np.nan)
     return TogetherLine(
         case=row.case,

@@ -102,13 +102,16 @@ def curves(functions: TransferFunctions, quantity: Quantity) -> list[Curve]:
 def largest_peaks(curve: Curve, n: int = 3) -> list[Peak]:
     """Return the largest peaks of a curve, the largest first.
 
-    An end of the range is among them where it is the largest of all.
+    Equal samples beside each other are one place, by the first of them. An end of the range is
+    among them where it is the largest of all.
     """
     size = curve.magnitude
-    inside = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
+    first = np.flatnonzero(np.diff(size, prepend=np.nan) != 0.0)
+    level = size[first]
+    inside = first[1:-1][(level[1:-1] > level[:-2]) & (level[1:-1] > level[2:])]
     ends = np.array([0, len(size) - 1])
-    highest = int(size.argmax())
-    found = np.union1d(inside, ends[(ends == highest) & (size[ends] > 0.0)])
+    places = first[[0, -1]]
+    found = np.union1d(inside, ends[(places == size.argmax()) & (size[ends] > 0.0)])
     found = found[np.argsort(-size[found], kind="stable")][:n]
     return [
         Peak(

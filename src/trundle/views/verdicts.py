@@ -45,6 +45,7 @@ def headline(result: StudyResult) -> list[dict[str, Any]]:
                     "governs": _governs(meetings, key, first or best),
                     "worst": _worst_place(result, key, first or best),
                     "road_passed": roughest_words(result.study, key.road, best) if best else "",
+                    "unmet": _unmet(bands),
                     "reasons": _reasons(verdicts, point),
                 }
             )
@@ -69,14 +70,19 @@ def strictest_passed(verdicts: Sequence[Verdict]) -> Verdict | None:
     return min(passed, key=lambda v: float(v.criterion.limits.min()), default=None)
 
 
+def _unmet(bands: Sequence[Verdict]) -> str:
+    """Say what stands in the place of a velocity criterion where none is known to be met."""
+    if not bands:
+        return "none asked for"
+    return "not assessed" if any(v.status == "not assessed" for v in bands) else "none"
+
+
 def _reasons(verdicts: tuple[Verdict, ...], point: str) -> str:
-    """Say why velocity criteria at a point are not assessed, if some are not."""
+    """Say why criteria at a point are not assessed, if some are not."""
     found = (
         reason
         for v in verdicts
-        if v.point == point
-        and v.status == "not assessed"
-        and v.criterion.quantity == "band_rms_velocity"
+        if v.point == point and v.status == "not assessed"
         for reason in v.reasons
     )
     return "; ".join(dict.fromkeys(found))
@@ -123,11 +129,11 @@ def verdict_matrix(result: StudyResult) -> tuple[list[str], list[tuple[str, list
         return [], []
     many_points = len(result.study.points) > 1
     columns: list[str] = []
-    rows: dict[str, list[Verdict]] = {}
+    rows: dict[str, list[Verdict]] = {}  # by name: titles may be alike
     for key, verdicts in result.verdicts.items():
         for point in result.study.points:
             columns.append(f"{key.case}, {key.road}" + (f", {point}" if many_points else ""))
             for verdict in verdicts:
                 if verdict.point == point:
-                    rows.setdefault(verdict.criterion.title, []).append(verdict)
-    return columns, list(rows.items())
+                    rows.setdefault(verdict.criterion.name, []).append(verdict)
+    return columns, [(found[0].criterion.title, found) for found in rows.values()]

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from trundle.criteria import Verdict
+from trundle.criteria.verdict import frequency_name
 from trundle.road import CLASS_NAMES, RoadClass, class_limits
-from trundle.signals import Averaging, nominal_frequency
+from trundle.signals import Averaging
 from trundle.study.model import Study
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 
@@ -17,6 +18,7 @@ __all__ = [
     "rank",
     "road_words",
     "roughest_words",
+    "roughness_words",
     "rule_name",
     "shown",
     "spread",
@@ -39,6 +41,14 @@ def written(value: float, digits: int = 3) -> str:
     return f"{short:.0f}" if 10.0**digits <= abs(short) < 1e6 else f"{value:.{digits}g}"
 
 
+def roughness_words(value: float) -> str:
+    """Write a Gd(n0) [m3] as people do: in 1e-6 m3, without a second power of ten."""
+    short = float(f"{1e6 * value:.3g}")
+    if short >= 1e6:
+        return f"{value:.3g} m3"
+    return f"{short:.0f}e-6 m3" if short >= 1e3 else f"{short:g}e-6 m3"
+
+
 def shown(units: str) -> tuple[str, float]:
     """Return the unit that engineers read a quantity in, and its size in SI."""
     units_of_people = {
@@ -59,8 +69,8 @@ def between(verdict: Verdict) -> str:
 
 
 def hertz(f: float) -> str:
-    """Write a mid-band frequency by its name; nothing for a single number."""
-    return f"{nominal_frequency(f):g}" if np.isfinite(f) else ""
+    """Write a mid-band frequency by its name, a line as it is; nothing for a single number."""
+    return frequency_name(f) if np.isfinite(f) else ""
 
 
 def rank(value: float) -> str:
@@ -89,7 +99,7 @@ def road_words(study: Study) -> list[str]:
         return ["none: nobody drives"]
     return [
         f"{label}: {road.level.replace('_', ' ')} of class {road.name}, Gd(n0) = "
-        f"{1e6 * road.roughness:.3g}e-6 m3"
+        f"{roughness_words(road.roughness)}"
         if isinstance(road, RoadClass)
         else f"{label}: {'level and smooth' if label == 'smooth' else road}"
         for label, road in study.roads.items()
@@ -107,4 +117,4 @@ def roughest_words(study: Study, road: str, verdict: Verdict) -> str:
     within = [name for name in CLASS_NAMES if class_limits(name)[2] <= value]
     name = f"all of class {within[-1]}" if within else "less than class A"
     bound = "at least" if verdict.margin >= 1.0 else "at most"
-    return f"{bound} {1e6 * value:.3g}e-6 m3 ({name})"
+    return f"{bound} {roughness_words(value)} ({name})"

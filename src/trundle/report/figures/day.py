@@ -7,8 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patches import StepPatch
 
-from trundle.report.canvas import COLOURS, Drawing, new_figure
+from trundle.report.canvas import Drawing, legend_below, line_look, new_figure
 from trundle.report.figures.map import draw_image, draw_panels
 from trundle.results.cells import DayKey
 from trundle.results.expected_days import DayRow, day_rows
@@ -57,16 +58,18 @@ def _mapped(result: StudyResult, key: DayKey, maps: list[DayMap], number: str) -
 
 
 def hours_figure(rows: list[DayRow]) -> Figure:
-    """Draw events by hour, a panel for each point."""
+    """Draw events by hour, a panel for each point, a look for each criterion in all of them."""
     points = list(dict.fromkeys(row.point for row in rows))
+    criteria = list(dict.fromkeys(row.criterion.name for row in rows))
+    drawn: dict[str, StepPatch] = {}  # by name: titles may be alike
     figure, panels = new_figure(7.2, 1.0 + 2.3 * len(points), rows=len(points), share="x")
     for panel, point in zip(panels, points, strict=True):
-        for k, row in enumerate(row for row in rows if row.point == point):
-            colour = COLOURS[k % len(COLOURS)]
-            panel.stairs(
-                row.expected.by_hour, np.arange(25), color=colour, linewidth=1.6,
-                label=row.criterion.title,
-            )  # fmt: skip
+        for row in (row for row in rows if row.point == point):
+            k = criteria.index(row.criterion.name)
+            colour, dashes = line_look(k)
+            drawn[row.criterion.name] = panel.stairs(
+                row.expected.by_hour, np.arange(25), color=colour, linestyle=dashes, linewidth=1.6
+            )
             if row.day is not None and not np.isnan(row.minutes_run):
                 criterion, place = row.place
                 run = row.day.events[:, criterion, place]
@@ -79,8 +82,8 @@ def hours_figure(rows: list[DayRow]) -> Figure:
         panel.set_ylim(bottom=0.0)
         panel.set_xticks(range(0, 25, 2))
     panels[-1].set_xlabel("hour of the day")
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    titles = {row.criterion.name: row.criterion.title for row in rows}
+    legend_below(figure, list(drawn.values()), [titles[name] for name in drawn], columns=4)
     return figure
 
 

@@ -43,21 +43,22 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
         yield Drawing(
             name="plan",
             title="Plan with routes and points",
-            caption="Beams (grey), secondary beams (dashed), columns (squares), routes with their "
-            "direction and speed, and the points where the response is read.",
+            caption=_plan_words(plan),
             draw=lambda: plan_figure(study, plan),
         )
     if plan is not None:
         yield Drawing(
             name="section",
             title="Section",
-            caption="Section along y: slab, beams, columns above and below.",
+            caption="Section along y: slab, beams"
+            + (", columns above and below." if plan.column else "."),
             draw=lambda: section_figure(plan),
         )
     yield Drawing(
         name="mesh",
         title="Finite-element model",
-        caption="Shells (blue), beams at their centroids (dark), columns (orange)."
+        caption="Shells (blue), beams at their centroids (dark)"
+        + (", columns (orange)." if _columns(study.floor) else ".")
         + _quality_words(study),
         draw=lambda: mesh_figure(study.floor),
     )
@@ -68,6 +69,19 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
             caption="Vertical motion of the slab, red up and blue down.",
             draw=lambda: modes_figure(study.floor, modes),
         )
+
+
+def _plan_words(plan: FloorPlan) -> str:
+    """Say what is drawn on a plan."""
+    columns = " columns (squares)," if plan.column else ""
+    return (
+        f"Beams (grey), secondary beams (dashed),{columns} routes with their direction and speed, "
+        "and the points where the response is read."
+    )
+
+
+def _columns(floor: Structure) -> bool:
+    return any(group.name == "column" for group in floor.elements)
 
 
 def _quality_words(study: Study) -> str:
@@ -191,7 +205,8 @@ def section_figure(plan: FloorPlan) -> Figure:
         axes.annotate("", (low, level), xytext=(high, level), arrowprops={"arrowstyle": "<->"})
         axes.text(0.5 * (low + high), level - 0.3, f"{high - low:g} m", ha="center", va="top")
     axes.set(xlabel="y [m]", ylabel="z [m]", ylim=(level - 2.5, plan.storey_above + 1.0))
-    axes.set_title("columns are fixed at both far ends", fontsize=9)
+    if plan.column:
+        axes.set_title("columns are fixed at both far ends", fontsize=9)
     axes.grid(visible=False)
     return figure
 

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch, Polygon
 from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
-from trundle.report.canvas import COLOURS, Drawing, class_colours, new_figure
+from trundle.report.canvas import COLOURS, Drawing, class_colours, legend_below, new_figure
 from trundle.report.figures.sources import draw_sources
 from trundle.response.quantities import Quantity, mapped
 from trundle.results.study_result import StudyResult
@@ -44,7 +44,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
     about = (
         f"{plan.n_places} places, level that {plan.percentile:g} % of {plan.runs} runs stay "
         f"below, averaging {plan.averaging}; a cell shows the place at its middle. "
-        "Routes dashed, points crossed, columns grey."
+        "Routes dashed, points crossed" + (", columns grey." if _has_columns(study) else ".")
     )
     yield Drawing(
         name="map_classes",
@@ -72,6 +72,14 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
                 caption=f"{_worst_words(views, quantity)} {about}",
                 draw=lambda quantity=quantity: level_map_figure(study, views, quantity),
             )
+
+
+def _has_columns(study: Study) -> bool:
+    """Return whether columns are drawn on maps."""
+    return bool(
+        (study.plan is not None and study.plan.column)
+        or (study.building is not None and study.building.columns)
+    )
 
 
 def _worst_words(views: list[MapView], quantity: Quantity) -> str:
@@ -103,13 +111,12 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
         levels = class_ranks(view.classes)
         _image(panel, study, view, levels, cmap=ListedColormap(colours), norm=norm)
     shown = sorted({int(r) for view in views for r in class_ranks(view.classes)})
-    figure.legend(
-        handles=[
-            Patch(facecolor=colours[i], edgecolor="#7F7F7F", label=names[i])
-            for i in reversed(shown)
-        ],
-        loc="outside lower center",
-        ncols=min(len(shown), 6),
+    ranks = shown[::-1]
+    legend_below(
+        figure,
+        [Patch(facecolor=colours[i], edgecolor="#7F7F7F") for i in ranks],
+        [names[i] for i in ranks],
+        columns=6,
         title=f"strictest criterion met, {plan.motion}",
     )
     return figure

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from trundle.records.assess import RecordResult
-from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
+from trundle.report.canvas import COLOURS, Drawing, legend_below, make_logarithmic, new_figure
 from trundle.report.figures.response import draw_criterion
 from trundle.signals import running_rms
 from trundle.units import GAL, MICROMETRE_PER_SECOND
@@ -28,13 +28,13 @@ def drawings(result: RecordResult) -> Iterator[Drawing]:
     yield Drawing(
         name="spectra",
         title="Velocity spectra on criteria",
-        caption="RMS velocity in one-third octaves of every channel.",
+        caption=f"RMS velocity in one-third octaves of {_channels(result)}.",
         draw=lambda: record_spectra_figure(result),
     )
     yield Drawing(
         name="history",
         title="Motion in time",
-        caption=f"Velocity and acceleration above {result.high_pass:g} Hz.",
+        caption=f"Velocity and acceleration of {_channels(result)} above {result.high_pass:g} Hz.",
         draw=lambda: record_history_figure(result),
     )
 
@@ -43,8 +43,16 @@ _MOST_CHANNELS = 6
 _MOST_SIMULATED = 6
 
 
+def _channels(result: RecordResult) -> str:
+    """Say which channels are drawn."""
+    n = len(result.runs.point_names)
+    if n <= _MOST_CHANNELS:
+        return "every channel"
+    return f"the first {_MOST_CHANNELS} of {n} channels"
+
+
 def record_history_figure(result: RecordResult) -> Figure:
-    """Draw velocity with its running 1 s RMS, and acceleration, of every channel."""
+    """Draw velocity with its running 1 s RMS, and acceleration, of the first channels."""
     runs = result.runs
     shown = runs.point_names[:_MOST_CHANNELS]
     figure, axes = new_figure(
@@ -69,8 +77,9 @@ def record_history_figure(result: RecordResult) -> Figure:
 def record_spectra_figure(result: RecordResult) -> Figure:
     """Draw band levels on the velocity criteria, over the ranges of simulations."""
     figure, (axes,) = new_figure(7.2, 4.8)
+    ways = {axis or "vertical" for axis in result.record.axes} | {"each axis"}
     for criterion in result.criteria:
-        if criterion.quantity == "band_rms_velocity":
+        if criterion.quantity == "band_rms_velocity" and criterion.axis in ways:
             draw_criterion(axes, criterion)
     scale = 1.0 / MICROMETRE_PER_SECOND
     for number, simulated in enumerate(result.simulated[:_MOST_SIMULATED]):
@@ -101,5 +110,5 @@ def record_spectra_figure(result: RecordResult) -> Figure:
     if n > _MOST_SIMULATED:
         title += f" of the first {_MOST_SIMULATED} of {n} cases"
     axes.set_title(title)
-    figure.legend(loc="outside lower center", ncols=2)
+    legend_below(figure, *axes.get_legend_handles_labels(), columns=2)
     return figure

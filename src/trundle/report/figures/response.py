@@ -10,9 +10,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trundle.criteria import Criterion
-from trundle.report.canvas import COLOURS, Drawing, make_logarithmic, new_figure
+from trundle.report.canvas import (
+    COLOURS,
+    Drawing,
+    legend_below,
+    line_look,
+    make_logarithmic,
+    new_figure,
+)
+from trundle.response import BandSpectra
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
+from trundle.study.model import Study
 from trundle.study.plans import Assessment
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 from trundle.views.printed import ComparisonRow, comparison_rows
@@ -61,10 +70,9 @@ def _histories(result: StudyResult) -> Iterator[Drawing]:
 def _criteria(result: StudyResult, assessment: Assessment) -> Iterator[Drawing]:
     """Give peaks and levels of every point on the curves, the levels for each road."""
     study, method = result.study, assessment.method
-    quantities = {c.quantity for c in assessment.criteria}
     for j, point in enumerate(study.points):
         end = f"_{j + 1}" if j else ""
-        if "peak_acceleration" in quantities:
+        if _limits(study, point, "peak_acceleration"):
             yield Drawing(
                 name=f"criteria_acceleration{end}",
                 title=f"Peak acceleration at {point} against equipment limits",
@@ -80,6 +88,14 @@ def _criteria(result: StudyResult, assessment: Assessment) -> Iterator[Drawing]:
                     result, road, method, point
                 ),
             )
+
+
+def _limits(study: Study, point: str, quantity: str) -> list[Criterion]:
+    """Return the criteria of a quantity that are for the motion of a point."""
+    ways = study.point_ways or ("vertical",) * len(study.points)
+    mine = {ways[list(study.points).index(point)], "each axis"}
+    criteria = study.assessment.criteria if study.assessment else ()
+    return [c for c in criteria if c.quantity == quantity and c.axis in mine]
 
 
 def history_figure(result: StudyResult, case: str, point: str) -> Figure:
@@ -113,28 +129,13 @@ def history_figure(result: StudyResult, case: str, point: str) -> Figure:
 def velocity_criteria_figure(result: StudyResult, road: str, method: str, point: str) -> Figure:
     """Draw band levels of every case on the velocity criteria."""
     figure, (axes,) = new_figure(7.2, 4.6)
-    criteria = result.study.assessment.criteria if result.study.assessment else ()
-    for criterion in criteria:
-        if criterion.quantity == "band_rms_velocity":
-            draw_criterion(axes, criterion)
+    for criterion in _limits(result.study, point, "band_rms_velocity"):
+        draw_criterion(axes, criterion)
     i = list(result.study.points).index(point)
     spectra_rule = result.study.assessment.averaging if result.study.assessment else "max_1s"
     for number, case in enumerate(result.study.cases):
         spectra = result.cells[CellKey(case.name, road, method)].spectra
-        low, middle, high = (spectra.percentile(p)[i] for p in (5.0, 50.0, 95.0))
-        colour = COLOURS[number % len(COLOURS)]
-        scale = 1.0 / MICROMETRE_PER_SECOND
-        axes.fill_between(
-            spectra.mid_band, low * scale, high * scale, color=colour, alpha=0.18, linewidth=0
-        )
-        axes.plot(
-            spectra.mid_band,
-            middle * scale,
-            color=colour,
-            marker="o",
-            markersize=3,
-            label=case.name,
-        )
+        _draw_levels(axes, spectra, i, case.name, line_look(number))
     make_logarithmic(axes, "xy")
     ticks = [1, 2, 4, 8, 16, 31.5, 63]
     axes.set(
@@ -148,8 +149,28 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     axes.set_title(
         f"class {road}, {point}, method {method!r}: median and 5-95 % of the runs", fontsize=9
     )
-    figure.legend(loc="outside lower center", ncols=len(result.study.cases))
+    legend_below(figure, *axes.get_legend_handles_labels(), columns=len(result.study.cases))
     return figure
+
+
+def _draw_levels(
+    axes: Axes, spectra: BandSpectra, point: int, name: str, look: tuple[str, str]
+) -> None:
+    """Draw median and range of the band levels of a case at a point [um/s]."""
+    colour, dashes = look
+    low, middle, high = (
+        spectra.percentile(p)[point] / MICROMETRE_PER_SECOND for p in (5.0, 50.0, 95.0)
+    )
+    axes.fill_between(spectra.mid_band, low, high, color=colour, alpha=0.18, linewidth=0)
+    axes.plot(
+        spectra.mid_band,
+        middle,
+        color=colour,
+        linestyle=dashes,
+        marker="o",
+        markersize=3,
+        label=name,
+    )
 
 
 def draw_criterion(axes: Axes, criterion: Criterion) -> None:
@@ -181,21 +202,19 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
             axes.plot([x, x], [low, high], color=colour, linewidth=5.0, alpha=0.35)
             axes.plot([x], [middle], marker="o", color=colour)
             labels.append(f"{case.name}, {road}")
-    criteria = result.study.assessment.criteria if result.study.assessment else ()
-    for criterion in criteria:
-        if criterion.quantity == "peak_acceleration" and criterion.axis != "horizontal":
-            limit = float(criterion.limits[0]) / GAL
-            axes.axhline(limit, color="black", linewidth=0.9)
-            axes.annotate(
-                f"{criterion.title.split(' (')[0]}, {limit:g} gal",
-                (1.0, limit),
-                xycoords=("axes fraction", "data"),
-                xytext=(0, 2),
-                textcoords="offset points",
-                ha="right",
-                va="bottom",
-                fontsize=8,
-            )
+    for criterion in _limits(result.study, point, "peak_acceleration"):
+        limit = float(criterion.limits[0]) / GAL
+        axes.axhline(limit, color="black", linewidth=0.9)
+        axes.annotate(
+            f"{criterion.title.split(' (')[0]}, {limit:g} gal",
+            (1.0, limit),
+            xycoords=("axes fraction", "data"),
+            xytext=(0, 2),
+            textcoords="offset points",
+            ha="right",
+            va="bottom",
+            fontsize=8,
+        )
     make_logarithmic(axes, "y")
     axes.set(ylabel="peak acceleration, 0-peak [gal]")
     axes.set_xticks(

@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from trundle._typing import Array
-from trundle.report.canvas import COLOURS, Drawing, new_figure
+from trundle._words import in_kmh
+from trundle.report.canvas import COLOURS, Drawing, legend_below, line_look, new_figure
 from trundle.results.study_result import StudyResult
 from trundle.road import FeaturedRoad, Road, RoadClass, RoughnessBand
 from trundle.route import Ramp, Route
@@ -183,10 +184,11 @@ def axle_forces_figure(
         )
         for i in reversed(range(vehicle.n_contacts)):
             dynamic = (forces[0, :, i] - vehicle.static_forces[i]) / GRAVITY / 1e3
-            colour = COLOURS[i % len(COLOURS)]
-            panel.plot(time, dynamic, color=colour, linewidth=0.8, label=vehicle.contact_names[i])
-        panel.set(ylabel="force [t]", title=f"{3.6 * speed:.0f} km/h, {road}", xlim=(0.0, duration))
+            colour, dashes = line_look(i)
+            name = vehicle.contact_names[i]
+            panel.plot(time, dynamic, color=colour, linestyle=dashes, linewidth=0.8, label=name)
+        panel.set(ylabel="force [t]", title=f"{in_kmh(speed)}, {road}", xlim=(0.0, duration))
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles[::-1], labels[::-1], ncols=6, loc="outside lower center")
+    legend_below(figure, handles[::-1], labels[::-1], columns=6)
     axes[-1].set_xlabel("time [s]")
     return figure

@@ -38,7 +38,6 @@ from trundle.views.words import road_words
 
 __all__ = ["unused_numbers", "write_report"]
 
-_TABLES = ("classes", "printed", "printed_bound")  # that bear numbers beside the figures
 _FILES = (
     building,
     model,
@@ -77,8 +76,17 @@ def _drawings(result: StudyResult) -> Iterator[Drawing]:
 
 def unused_numbers(result: StudyResult) -> list[str]:
     """Return the names that a study numbers and that no figure or table of its report has."""
-    known = {drawing.name for drawing in _drawings(result)}.union(_TABLES)
+    known = {drawing.name for drawing in _drawings(result)}.union(_tables(result))
     return [name for name in result.study.numbering if name not in known]
+
+
+def _tables(result: StudyResult) -> Iterator[str]:
+    """Give the names of the tables on the page that bear numbers."""
+    yield "classes"
+    if comparison_rows(result):
+        yield "printed"
+        if bound_rows(result):
+            yield "printed_bound"
 
 
 def _numbered(drawing: Drawing, numbering: Mapping[str, str]) -> Drawing:

@@ -44,12 +44,36 @@ def test_what_is_shown_is_there_for_programs(trundle, capsys, tmp_path):
     ("arguments", "words"),
     [
         (("forklift_fl9",), "forklift_fl"),
-        (("hs20_44", "--out", "x.doc"), ".png, .svg or .pdf"),
-        (("hs20_44", "--speed", "fast"), "--speed"),
-        (("hs20_44", "--out", "/nowhere/x.png"), "cannot be written"),
+        (("hs20_44", "--out", "x.doc"), ".pdf or .png or .svg"),
+        (("hs20_44", "--speed", "fast"), "--speed 'fast': "),
+        (("hs20_44", "--out", "/nowhere/x.png"), "there is no folder"),
+        (("hs20_44", "--out", "c" * 250 + ".png"), "File name too long"),
+        (("hs20_44", "--out", "c" * 300 + ".png"), "File name too long"),
     ],
 )
 def test_what_cannot_be_shown_is_refused(trundle, capsys, tmp_path, monkeypatch, arguments, words):
     monkeypatch.chdir(tmp_path)
     assert trundle("vehicles", "show", *arguments) == 2
     assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("out", ["none/x.png", "c" * 250 + ".png"])
+def test_a_picture_that_cannot_be_written_leaves_one_document(
+    trundle, capsys, tmp_path, monkeypatch, out
+):
+    """Programs read one JSON document from a stream: the vehicle, or the mistake."""
+    monkeypatch.chdir(tmp_path)
+    arguments = ("vehicles", "show", "hs20_44", "--out", out, "--json")
+    monkeypatch.setattr("sys.argv", ["trundle", *arguments])
+    assert trundle(*arguments) == 2
+    assert list(json.loads(capsys.readouterr().out)) == ["error"]
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_json_counts_wherever_it_stands(trundle, capsys, tmp_path, before):
+    """Before the word that follows or behind it: the vehicle's numbers, once."""
+    words = ["vehicles", "show", "hs20_44", "--out", tmp_path / "x.png"]
+    words.insert(1 if before else 3, "--json")
+    assert trundle(*words) == 0
+    assert json.loads(capsys.readouterr().out)["name"] == "hs20_44"

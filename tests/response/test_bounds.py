@@ -33,6 +33,7 @@ def test_percentile_rank():
     assert percentile_rank(5.0, samples) == 45.0
 
 
-def test_an_empty_bound_is_refused():
+@pytest.mark.parametrize("of", [upper_bounds, lambda none: percentile_rank(1.0, none)])
+def test_nothing_has_no_bound_and_no_rank(of):
     with pytest.raises(InputError, match="at least one"):
-        upper_bounds([])
+        of([])

@@ -197,3 +197,10 @@ def test_other_wavinesses_hold_their_power_and_are_found_again(waviness):
         for seed in range(20)
     ]
     assert np.mean(fits) == pytest.approx(waviness, abs=0.1)
+
+
+def test_a_band_that_falls_holds_no_variance():
+    """From 1 to 0.1 cycle/m the integral is negative, which no variance is; of one line it is 0."""
+    with pytest.raises(InputError, match=r"n_max must be n_min, 1 cycle/m, or more; got 0\.1"):
+        RoadClass("A").variance(1.0, 0.1)
+    assert RoadClass("A").variance(1.0, 1.0) == 0.0

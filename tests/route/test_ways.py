@@ -203,6 +203,7 @@ def test_it_ends_where_it_comes_to_rest():
         SpeedOverTime(time=np.array([0.0, 2.0, 5.0, 9.0]), value=np.array([1.0, 4.0, 0.0, 2.0])),
         SpeedOverTime.over_stations([0, 5, 9, 20], [3.0, 1.0, 0.0, 4.0], waits=[2.0]),
         SteadyAcceleration(initial=6.0, acceleration=-0.5),
+        SteadyAcceleration(initial=2.0, acceleration=0.5),
         ConstantSpeed(3.0),
     ],
 )

@@ -9,7 +9,7 @@ from models import small_floor
 from trundle.dynamics import ModalRatio
 from trundle.errors import InputError
 from trundle.road import Profile, RoadClass
-from trundle.route import Route, SpeedOverTime, StaticStart
+from trundle.route import Abrupt, Route, SpeedOverTime, StaticStart, SteadyAcceleration
 from trundle.simulate import (
     Coupled,
     Crossing,
@@ -298,7 +298,7 @@ def test_wheels_beside_a_sharp_corner_are_refused():
         (lambda: BodyForce(amplitude=1.0), "a frequency of its own, or an order"),
         (lambda: BodyForce(amplitude=1.0, frequency=2.0, order=1.0, radius=0.3), "a frequency"),
         (lambda: BodyForce(amplitude=1.0, order=2.0), "radius of the"),
-        (lambda: OutOfRound(amplitude=1e-3, radius=0.3, order=0), "order must be 1"),
+        (lambda: OutOfRound(amplitude=1e-3, radius=0.3, order=0), "order must be a whole number"),
         (lambda: van(forces=(BodyForce(amplitude=1.0, frequency=2.0, body=3),)).build(), "0 to 0"),
     ],
 )
@@ -316,6 +316,28 @@ def test_an_axle_out_of_round_is_both_its_wheels():
     assert shaken[2] > 1.5 * shaken[0]
     with pytest.raises(InputError, match="has no axle 3 to be out of round"):
         van(rounds=(OutOfRound(amplitude=1e-3, radius=0.35, axle=2),)).build()
+
+
+def test_wheels_that_turn_too_fast_once_they_have_sped_up_are_refused():
+    """Lugs of order 12 on 0.4 m from 2 to 22 m/s over 120 m: 9.5 Hz at first, 105 Hz in the end.
+
+    v^2 = 4 + 2 x 2 x 120 = 22^2. Steps of 10 ms show 40 Hz; those of 3.8 ms are enough. The same
+    speeds over time are refused alike, and a route that ends before 40 Hz is not: 8.4 m/s.
+    """
+    shaken = van(rounds=(OutOfRound(amplitude=1e-4, radius=0.4, order=12, axle=0),)).build()
+    over_time = SpeedOverTime(time=np.array([0.0, 10.0]), value=np.array([2.0, 22.0]))
+    steady, start = SteadyAcceleration(initial=2.0, acceleration=2.0), Abrupt()
+
+    def passage(length, law):
+        route = replace(Route.straight((0, 0), (length, 0), speed=2.0), law=law)
+        return Passage(crossing=Crossing(shaken, route, SMOOTH, entry=start))
+
+    for law in (over_time, steady):
+        with pytest.raises(InputError, match=r"out_of_round shakes at 105 Hz.*dt to 3.8 ms"):
+            passage(120.0 - shaken.length, law).check(0.01, None)
+    short = passage(10.0, steady)
+    assert short.crossing.fastest == pytest.approx(np.sqrt(4.0 + 4.0 * (10.0 + shaken.length)))
+    short.check(0.01, None)
 
 
 def test_what_shakes_faster_than_a_step_shows_is_refused():

@@ -135,6 +135,19 @@ def test_a_slip_of_unit_or_point_is_doubted_with_what_was_meant(doubts, old, new
     assert hint in about, about
 
 
+@pytest.mark.parametrize("order", [("1 t", "900 t"), ("900 t", "1 t")])
+def test_each_vehicle_of_one_kind_is_doubted_by_its_own_name(doubts, order):
+    """900 t are 7.5 times the heaviest vehicle that is usual, whichever route comes first."""
+    payload = 'payload = {{ mass = "{}", body = 0, setback = "5 m" }}'
+    first, second = (f"{TRUCK}\n{payload.format(mass)}" for mass in order)
+    lane = ON_WALLS[ON_WALLS.index("[[route]]") : ON_WALLS.index("[[road]]")]
+    again = lane.replace('"lane"', '"back"').replace('"truck"', '"other"')
+    found = doubts((TRUCK, f"{first}\n[vehicle.other]\n{second}"), (lane, lane + again))
+    heavy = ("truck", "other")[order.index("900 t")]
+    assert "10 times smaller" in found[f"vehicle.{heavy}"]
+    assert {"vehicle.truck", "vehicle.other"} & {*found} == {f"vehicle.{heavy}"}
+
+
 def test_check_prints_doubts_and_still_finds_no_mistake(tmp_path, trundle, capsys):
     """A doubt does not stop anything: exit code 0, the doubt on a line of its own."""
     path = tmp_path / "study.toml"

@@ -260,3 +260,21 @@ def test_units_are_found_from_hinges():
 def test_what_cannot_be_is_refused(make, words):
     with pytest.raises(InputError, match=words):
         make()
+
+
+def test_axles_of_bogies_are_counted_on_from_the_axles():
+    """An axle of two wheels is one axle: behind it come axles 2 and 3 of a bogie, 4 of another.
+
+    By that number a wheel out of round is found.
+    """
+    beam = {"body": 0, "stiffness": 1e6, "mass": 500.0, "tyre_stiffness": 2e6}
+    made = build_vehicle(
+        name="m", bodies=(Body(mass=5e3, pitch_inertia=2e4, centre=3.0, roll_inertia=1e3),),
+        axles=(Axle(body=0, setback=0.0, stiffness=4e5, track_width=2.0),),
+        bogies=(
+            Bogie(setback=4.0, pitch_inertia=200.0, wheels=(-0.6, 0.6), **beam),
+            Bogie(setback=7.0, wheels=(0.0,), **beam),
+        ),
+    )  # fmt: skip
+    assert made.contact_names == ("axle 1 left", "axle 1 right", "axle 2", "axle 3", "axle 4")
+    assert [made.contacts_of(i) for i in range(4)] == [[0, 1], [2], [3], [4]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import signal
 import sys
 from pathlib import Path
@@ -12,6 +13,7 @@ import typer
 from trundle import __version__
 from trundle.cli import options
 from trundle.cli.models import models
+from trundle.cli.saying import say
 from trundle.cli.vehicles import vehicles
 from trundle.cli.walking import walking
 from trundle.errors import ComputationError, InputError
@@ -38,7 +40,7 @@ StudyPath = Annotated[Path, typer.Argument(help="Study file (TOML).", metavar="S
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        print(f"trundle {__version__}")
+        say(f"trundle {__version__}")
         raise typer.Exit
 
 
@@ -270,6 +272,8 @@ def criteria(*, as_json: options.Json = False) -> None:
 def main() -> None:
     """Run the command line; turn errors into messages and exit codes."""
     signal.signal(signal.SIGTERM, _interrupt)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a terminal of another alphabet shows a ?
+        sys.stdout.reconfigure(errors="replace")
     try:
         app()
     except SystemExit as stop:
@@ -288,6 +292,11 @@ def main() -> None:
         sys.exit(INTERRUPTED)
     except BrokenPipeError:
         sys.exit(FAILED)
+    except OSError as error:  # of a file that is named: too long a name, no right to read it
+        if error.filename is None:
+            raise
+        _say_error(error, f"error: {error.filename}: {error.strerror}")
+        sys.exit(BAD_INPUT)
 
 
 def _say_error(error: Exception, words: str) -> None:
@@ -295,16 +304,15 @@ def _say_error(error: Exception, words: str) -> None:
     if "--json" in sys.argv[1:]:
         from trundle.cli.show import error_as_json
 
-        print(error_as_json(error))
-    # names of files may hold what would steer a terminal
-    print("".join(c if c.isprintable() or c == "\n" else "?" for c in words), file=sys.stderr)
+        say(error_as_json(error))
+    say(words, error=True)
 
 
 def _say_interrupted() -> None:
-    print(
+    say(
         "interrupted: no results were written, and earlier ones still stand; the same command goes "
         "on with what was finished",
-        file=sys.stderr,
+        error=True,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterable
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from trundle.errors import InputError
@@ -22,9 +22,13 @@ def check_file(option: str, file: Path, suffixes: Iterable[str]) -> None:
     endings = sorted(suffixes)
     if file.suffix.lower() not in endings:
         raise InputError(f"{option} {str(file)!r}: must end with {' or '.join(endings)}")
-    if file.is_dir():
+    try:
+        is_folder, has_place = file.is_dir(), file.absolute().parent.is_dir()
+    except OSError as error:
+        raise InputError(f"{option} {str(file)!r}: cannot be written ({error.strerror})") from None
+    if is_folder:
         raise InputError(f"{option} {str(file)!r}: is a folder; name a file in it")
-    if not file.absolute().parent.is_dir():
+    if not has_place:
         raise InputError(
             f"{option} {str(file)!r}: there is no folder {file.absolute().parent}; make it first"
         )
@@ -46,4 +50,5 @@ def written_aside(option: str, file: Path) -> Generator[Path]:
     except OSError as error:
         raise InputError(f"{option} {str(file)!r}: cannot be written ({error.strerror})") from None
     finally:
-        aside.unlink(missing_ok=True)
+        with suppress(OSError):  # a name that none can bear
+            aside.unlink(missing_ok=True)

@@ -11,6 +11,8 @@ import numpy as np
 
 from trundle._checks import one_of
 from trundle.cli.fail_on import check_fail_on, say_unmet
+from trundle.cli.quantities import quantity_of
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.criteria import VC, Criterion, Shape, find_criterion, shaped
@@ -21,7 +23,6 @@ from trundle.report import write_record_report
 from trundle.results.results_folder import check_target, new_results_folder
 from trundle.signals import Averaging, Record
 from trundle.study_file.user_criteria import read_criteria
-from trundle.units import to_si
 from trundle.views.record import record_rows
 
 __all__ = ["assess"]
@@ -54,7 +55,9 @@ def assess(
     check_fail_on(fail_on, curves)
     if point is not None and simulation is None:
         raise InputError("--point names a point of a study: say which by --simulation")
-    limit = to_si(high_pass, "frequency")
+    limit = quantity_of("--high-pass", high_pass, "frequency")
+    if not np.isfinite(events):
+        raise InputError(f"--events {events:g}: must be a number of passages, such as 16")
     if out is not None and len(files) > 1:
         raise InputError("--out names the folder of one record; leave it out for several")
     places = [out or Path(f"{file.stem}-results") for file in files]
@@ -95,7 +98,7 @@ def _said(result: RecordResult, place: Path, show: Show) -> dict[str, Any]:
     report = place.resolve() / "report.html"
     if show == "tables":
         _print(result)
-        print(f"\nreport: {report}")
+        say(f"\nreport: {report}")
     else:
         for warning in result.warnings:
             warn(warning, show)
@@ -147,6 +150,6 @@ def _print(result: RecordResult) -> None:
     )
     reasons = (r for v in result.verdicts if v.status == "not assessed" for r in v.reasons)
     for reason in dict.fromkeys(reasons):
-        print(f"not assessed: {reason}")
+        say(f"not assessed: {reason}")
     for warning in result.warnings:
-        print(f"warning: {warning}")
+        say(f"warning: {warning}")

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from trundle.cli.afford import what_is_dear
+from trundle.cli.quantities import quantity_of
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import say_json
 from trundle.cli.sketch import plan_sketch
@@ -19,7 +21,7 @@ from trundle.study.assumptions import early_end_warnings
 from trundle.study.doubts import study_doubts
 from trundle.study.model import Study
 from trundle.study_file.build import load_study
-from trundle.units import GAL, MICROMETRE_PER_SECOND, to_si
+from trundle.units import GAL, MICROMETRE_PER_SECOND
 
 _HIGHEST = 2e3  # Hz
 
@@ -33,30 +35,30 @@ def check(path: Path, *, as_json: bool = False) -> None:
         say_json(_checked(study))
         return
     cells = len(study.cases) * len(study.roads) * len(study.methods)
-    print(f"{path}: no mistakes")
+    say(f"{path}: no mistakes")
     for warning in study_doubts(study):
-        print(f"warning: {warning}")
-    print(f"\n{study.title}")
+        say(f"warning: {warning}")
+    say(f"\n{study.title}")
     mass = study.floor.moving_mass()
-    print(
+    say(
         f"floor: {study.floor.name}, {len(study.floor.nodes)} nodes, "
         f"{study.floor.n_dofs} degrees of freedom, "
         + ("known by its modes" if mass is None else f"{mass / 1e3:.0f} t moving vertically")
     )
-    print(f"work:  {cells} cells of {study.runs} runs, records of up to {study.longest_record:g} s")
+    say(f"work:  {cells} cells of {study.runs} runs, records of up to {study.longest_record:g} s")
     if study.schedules:
         days = (f"{name} of {one.per_day:.4g} passages" for name, one in study.schedules.items())
-        print(f"days:  {'; '.join(days)}")
+        say(f"days:  {'; '.join(days)}")
     estimate = estimate_of(study)
-    print(f"takes: {estimate}")
+    say(f"takes: {estimate}")
     if dear := what_is_dear(estimate):
-        print(f"warning: {dear}; 'trundle run' asks for --yes")
+        say(f"warning: {dear}; 'trundle run' asks for --yes")
     for method in study.methods:
-        print(f"method {method.name!r}: {method.interaction}; entry: {method.entry}")
+        say(f"method {method.name!r}: {method.interaction}; entry: {method.entry}")
     for case in study.cases:
         for warning in early_end_warnings(study, case):
-            print(f"warning: {warning}")
-    print(plan_sketch(study))
+            say(f"warning: {warning}")
+    say(plan_sketch(study))
 
 
 def _checked(study: Study) -> dict[str, Any]:
@@ -92,7 +94,7 @@ def new(path: Path) -> None:
         path.write_text(template, encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror})") from None
-    print(f"{path}: written; next: trundle check {path}")
+    say(f"{path}: written; next: trundle check {path}")
 
 
 def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
@@ -119,9 +121,9 @@ def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
         ),
     )
     if floor.has_matrices:
-        print("The count agrees with Sylvester's law of inertia: none is missing.")
+        say("The count agrees with Sylvester's law of inertia: none is missing.")
     else:
-        print("They were given: that none is missing is their giver's word.")
+        say("They were given: that none is missing is their giver's word.")
 
 
 def _known(value: float, form: str) -> str:
@@ -164,7 +166,7 @@ def criteria(*, as_json: bool = False) -> None:
         text_columns=5,
     )
     for source, confidence in dict.fromkeys((c.source, c.confidence) for c in all_criteria()):
-        print(f"source: {source}\n        confidence: {confidence}")
+        say(f"source: {source}\n        confidence: {confidence}")
 
 
 _SHOWN: dict[str, tuple[str, float]] = {
@@ -186,10 +188,7 @@ def _corners(criterion: Criterion) -> str:
 
 
 def _frequency(text: str) -> float:
-    try:
-        value = to_si(text, "frequency")
-    except InputError as error:
-        raise InputError(f"--f-max {text!r}: {error}") from None
+    value = quantity_of("--f-max", text, "frequency")
     if not 0.0 < value <= _HIGHEST:
         raise InputError(f"--f-max {text!r}: must be greater than 0, and at most {_HIGHEST:g} Hz")
     return value

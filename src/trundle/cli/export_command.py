@@ -9,6 +9,8 @@ import numpy as np
 
 from trundle._progress import Tell
 from trundle.cli.opened import open_path
+from trundle.cli.quantities import quantity_of
+from trundle.cli.saying import say
 from trundle.cli.screen import progress_bar
 from trundle.dynamics import Modes
 from trundle.errors import InputError
@@ -18,7 +20,6 @@ from trundle.run.mode_cache import modes_of
 from trundle.run.playback import Playback, playback_of
 from trundle.structure import ModalModel, Structure
 from trundle.study.model import Study
-from trundle.units import to_si
 
 __all__ = ["Wanted", "export_of", "modes_to", "played"]
 
@@ -45,7 +46,7 @@ def export_of(path: Path, out: Path, *, kind: str, wanted: Wanted, quiet: bool) 
     main, *others = export(subject, out, chosen.kind)
     if not quiet:
         more = f", with {len(others)} files beside it" if others else ""
-        print(f"{main}: {chosen.name}{more}")
+        say(f"{main}: {chosen.name}{more}")
 
 
 def _subject(path: Path, wanted: Wanted, tell: Tell, chosen: ExportFormat) -> Subject:
@@ -69,10 +70,7 @@ def _subject(path: Path, wanted: Wanted, tell: Tell, chosen: ExportFormat) -> Su
 def modes_to(structure: Structure, f_max: str, tell: Tell, study: Study | None) -> Modes:
     """Return the modes of a structure to a frequency."""
     if f_max:
-        try:
-            limit = to_si(f_max, "frequency")
-        except InputError as error:
-            raise InputError(f"--f-max {f_max!r}: {error}") from None
+        limit = quantity_of("--f-max", f_max, "frequency")
     elif isinstance(structure, ModalModel):
         limit = structure.reach
     else:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterable, Sequence
 
+from trundle.cli.saying import say
 from trundle.cli.show import Show
 from trundle.criteria import Criterion, Verdict
 from trundle.errors import InputError
@@ -42,5 +42,5 @@ def say_unmet(wanted: Sequence[str], show: Show, verdicts: Iterable[tuple[str, V
         if verdict.criterion.name.casefold() in names and verdict.status != "pass"
     ]
     for line in unmet:
-        print(f"not met: {line}", file=sys.stdout if show == "tables" else sys.stderr)
+        say(f"not met: {line}", error=show != "tables")
     return bool(unmet)

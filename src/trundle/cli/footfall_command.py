@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from trundle.cli.quantities import quantity_of
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
@@ -16,7 +18,6 @@ from trundle.results.results_folder import check_target, new_results_folder
 from trundle.run.footfall import FootfallAsked, StudyFootfall, study_footfall
 from trundle.simulate import footfall_rule
 from trundle.study_file.build import load_study
-from trundle.units import to_si
 from trundle.views.footfall import FootfallDose, level_words, worst_rows
 
 __all__ = ["FootfallOptions", "footfall"]
@@ -66,9 +67,9 @@ def _print(found: StudyFootfall, out: Path) -> None:
     print_table(title, _HEADINGS, worst_rows(found))
     x, y, on = found.where(response.worst)
     level = response.governing.level[response.worst]
-    print(f"worst: {level:.3g} at ({x:.2f}, {y:.2f}) m{f' on {on}' if on else ''}")
-    print(f"source: {response.load.source}\n        confidence: {response.load.confidence}")
-    print(f"\ntable and maps: {out.resolve()}")
+    say(f"worst: {level:.3g} at ({x:.2f}, {y:.2f}) m{f' on {on}' if on else ''}")
+    say(f"source: {response.load.source}\n        confidence: {response.load.confidence}")
+    say(f"\ntable and maps: {out.resolve()}")
 
 
 def _asked(options: FootfallOptions) -> FootfallAsked:
@@ -123,10 +124,7 @@ def _quantity(option: str, text: str, kind: str) -> float | None:
     """Return what an option gives in SI; None if it is not given."""
     if not text:
         return None
-    try:
-        value = to_si(text, kind)
-    except InputError as error:
-        raise InputError(f"{option} {text!r}: {error}") from None
+    value = quantity_of(option, text, kind)
     if not 0.0 < value < np.inf:
         raise InputError(f"{option} {text!r}: must be greater than 0")
     return value

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from trundle.cli.afford import check_affordable
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table, progress_bar
 from trundle.run.estimate import estimate_of
 from trundle.run.meshes import compare_meshes, on_two_meshes
@@ -52,7 +53,7 @@ def compare(path: Path, *, yes: bool = False) -> None:
                 for b, f in enumerate(found.bands)
             ),
         )
-    print(
+    say(
         f"change: {coarse:g} m against {fine:g} m on the same roads; where it is large, set "
         f"mesh_size to {fine:g} m and look again"
     )

@@ -10,6 +10,7 @@ from typing import TypeVar
 from trundle._checks import one_of
 from trundle.cli.afford import check_affordable
 from trundle.cli.executors import check_executor, executor_of
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
@@ -90,7 +91,7 @@ def _say(sweep: Sweep, report: Path, show: Show) -> None:
     for warning in sweep.warnings():
         warn(warning, show)
     if show == "tables":
-        print(f"\nreport: {report}")
+        say(f"\nreport: {report}")
     elif show == "json":
         warnings = [str(warning) for warning in sweep.warnings()]
         rows = mitigation_rows(sweep)
@@ -203,4 +204,4 @@ def _print(sweep: Sweep) -> None:
                 ),
             )
     if UNKNOWN in found.values():
-        print(PARTLY)
+        say(PARTLY)

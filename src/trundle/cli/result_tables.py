@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table
 from trundle.criteria import Verdict
 from trundle.results.study_result import StudyResult
@@ -145,11 +146,11 @@ def _print_verdicts(result: StudyResult) -> None:
         some = slice(first, first + _TOGETHER)
         rows = ((name, *(_outcome(v) for v in verdicts[some])) for name, verdicts in matrix)
         print_table(title if first == 0 else "and", ("criterion", *columns[some]), rows)
-    print(f"road {'; '.join(road_words(result.study))}")
+    say(f"road {'; '.join(road_words(result.study))}")
     reasons = (r for _, vs in matrix for v in vs if v.status == "not assessed" for r in v.reasons)
     for reason in dict.fromkeys(reasons):
-        print(f"not assessed: {reason}")
-    print("? a pass whose 95 % interval reaches below 1: more runs might fail it")
+        say(f"not assessed: {reason}")
+    say("? a pass whose 95 % interval reaches below 1: more runs might fail it")
 
 
 def _print_together(result: StudyResult) -> None:
@@ -176,7 +177,7 @@ def _print_days(result: StudyResult) -> None:
             ((x.point, x.criterion, x.events, x.minutes, x.days, x.run) for x in day.lines),
             text_columns=2,
         )
-        print(f"{day.passages}; {day.meeting}")
+        say(f"{day.passages}; {day.meeting}")
 
 
 def _outcome(verdict: Verdict) -> str:

@@ -11,6 +11,7 @@ from trundle.cli.afford import check_affordable
 from trundle.cli.executors import check_executor, executor_of
 from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.result_tables import print_result
+from trundle.cli.saying import say
 from trundle.cli.screen import progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.report import unused_numbers
@@ -53,7 +54,7 @@ def run(
     if show == "tables":
         print_result(result)
         if result.mesh is not None:
-            print(f"mesh: {mesh_words(result.mesh)}")
+            say(f"mesh: {mesh_words(result.mesh)}")
     for method, found in result.warnings().items() if show != "json" else ():
         for warning in found:
             if warning not in told:
@@ -61,7 +62,7 @@ def run(
     for name in unused_numbers(result):
         warn(f"publication.numbers.{name}: no figure or table of the report has this name", show)
     if show == "tables":
-        print(f"\nreport: {report}")
+        say(f"\nreport: {report}")
     elif show == "json":
         say_json(json.loads((place / "summary.json").read_text("utf-8")) | {"report": str(report)})
     return say_unmet(

@@ -19,6 +19,7 @@ from rich.table import Table
 from rich.text import Text
 
 from trundle._progress import Tell
+from trundle.cli.saying import printable, say
 
 __all__ = ["print_table", "progress_bar"]
 
@@ -33,12 +34,12 @@ def print_table(
 
     Nothing is read as markup, so a unit or a name in brackets is shown as it is.
     """
-    table = Table(title=Text(title))
+    table = Table(title=Text(printable(title)))
     for i, heading in enumerate(headings):
         justify = "left" if i < text_columns else "right"
-        table.add_column(Text(heading), justify=justify, overflow="fold")
+        table.add_column(Text(printable(heading)), justify=justify, overflow="fold")
     for row in rows:
-        table.add_row(*(Text(cell) for cell in row))
+        table.add_row(*(Text(printable(cell)) for cell in row))
     width = None if sys.stdout.isatty() else _PIPE_WIDTH
     Console(highlight=False, width=width).print(table)
 
@@ -63,7 +64,9 @@ def progress_bar(*, quiet: bool = False) -> Generator[Tell]:
         transient=True,
     ) as progress:
         task = progress.add_task("", total=1.0)
-        yield lambda what, share: progress.update(task, description=what, completed=share)
+        yield lambda what, share: progress.update(
+            task, description=printable(what), completed=share
+        )
 
 
 def _time_left(elapsed: float, done: float, left: float) -> str:
@@ -85,6 +88,6 @@ def _line_teller() -> Tell:
         if what not in seen:
             seen.add(what)
             left = _time_left(now - begun[0][0], share - begun[0][1], 1.0 - share)
-            print(f"[{100 * share:3.0f} %{left}] {what}", file=sys.stderr, flush=True)
+            say(f"[{100 * share:3.0f} %{left}] {what}", error=True)
 
     return tell

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-import sys
 from typing import Any, Literal, TypeAlias
 
 from trundle._json import plain
+from trundle.cli.saying import say
 from trundle.errors import InputError, StudyError
 
 __all__ = ["Show", "error_as_json", "say_json", "show_of", "warn"]
@@ -23,12 +23,12 @@ def show_of(*, as_json: bool, quiet: bool) -> Show:
 
 def say_json(value: object) -> None:
     """Print a value as JSON, which has no not-a-number."""
-    print(json.dumps(plain(value), indent=1, allow_nan=False))
+    say(json.dumps(plain(value), indent=1, allow_nan=False))
 
 
 def warn(message: object, show: Show) -> None:
     """Print a doubt: among the tables, or on the error stream beside JSON and silence."""
-    print(f"warning: {message}", file=sys.stdout if show == "tables" else sys.stderr)
+    say(f"warning: {message}", error=show != "tables")
 
 
 def error_as_json(error: Exception) -> str:

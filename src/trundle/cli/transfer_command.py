@@ -14,6 +14,8 @@ import numpy as np
 from trundle._checks import one_of
 from trundle._csv import write_csv
 from trundle.cli.aside import check_file, written_aside
+from trundle.cli.quantities import quantity_of
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.errors import InputError
@@ -79,7 +81,7 @@ def transfer(path: Path, asked: Asked, *, show: Show = "tables") -> None:
     if show == "tables":
         for file in (asked.out, asked.figure):
             if file is not None:
-                print(f"written: {file}")
+                say(f"written: {file}")
 
 
 def _method(study: Study, name: str) -> MethodPlan:
@@ -134,10 +136,7 @@ def _lines(asked: Asked, method: MethodPlan) -> np.ndarray:
 
 
 def _frequency(option: str, text: str) -> float:
-    try:
-        value = to_si(text, "frequency")
-    except InputError as error:
-        raise InputError(f"{option} {text!r}: {error}") from None
+    value = quantity_of(option, text, "frequency")
     if not _LOWEST <= value <= _HIGHEST:
         raise InputError(f"{option} {text!r}: must be {_LOWEST:g} to {_HIGHEST:g} Hz")
     return value

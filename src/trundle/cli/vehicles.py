@@ -22,6 +22,7 @@ def listed(context: typer.Context, *, as_json: options.Json = False) -> None:
 
     A name with _worn has worn dampers, one with _laden its payload.
     """
+    context.obj = as_json  # for what follows, where it may stand too
     if context.invoked_subcommand is None:
         from trundle.cli import vehicles_command
 
@@ -30,6 +31,7 @@ def listed(context: typer.Context, *, as_json: options.Json = False) -> None:
 
 @vehicles.command()
 def show(
+    context: typer.Context,
     name: Annotated[str, typer.Argument(help="Its name, as 'trundle vehicles' lists it.")],
     *,
     speed: Annotated[
@@ -46,4 +48,6 @@ def show(
     """
     from trundle.cli import vehicles_command
 
-    vehicles_command.show(name, speed=speed, out=out or Path(f"{name}.png"), as_json=as_json)
+    vehicles_command.show(
+        name, speed=speed, out=out or Path(f"{name}.png"), as_json=as_json or bool(context.obj)
+    )

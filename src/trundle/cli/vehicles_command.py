@@ -5,11 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from trundle.cli.aside import check_file, written_aside
+from trundle.cli.quantities import quantity_of
+from trundle.cli.saying import say
 from trundle.cli.screen import print_table
 from trundle.cli.show import say_json
 from trundle.errors import InputError
-from trundle.units import to_si
-from trundle.vehicle import GRAVITY, VEHICLES, Vehicle, describe
+from trundle.vehicle import GRAVITY, VEHICLES, Description, Vehicle, describe
 
 __all__ = ["list_all", "show"]
 
@@ -40,46 +42,38 @@ def list_all(*, as_json: bool = False) -> None:
         ),
         text_columns=2,
     )
-    print(
+    say(
         "trust: high: read in the source; medium: inferred or quoted in part; low: mostly assumed\n"
         "'trundle vehicles show NAME' tells sources and assumptions, and draws one\n"
     )
     for source in dict.fromkeys(vehicle.source for vehicle in made.values()):
-        print(f"source: {source}")
+        say(f"source: {source}")
 
 
 def show(name: str, *, speed: str, out: Path, as_json: bool = False) -> None:
     """Print a vehicle's numbers and sources, and write a picture of it."""
-    if out.suffix.lower() not in _SUFFIXES:
-        raise InputError(f"--out {str(out)!r}: a picture ends with .png, .svg or .pdf")
-    try:
-        driven = to_si(speed, "speed")
-    except InputError as error:
-        raise InputError(f"--speed {speed!r}: {error}") from None
+    check_file("--out", out, _SUFFIXES)
+    driven = quantity_of("--speed", speed, "speed")
     if not 0.1 <= driven <= 60.0:
         raise InputError(f"--speed {speed!r}: must be 0.36 to 216 km/h")
     described = describe(name)
     vehicle = described.build()
+    _draw(described, vehicle, driven, out)
     if as_json:
         say_json(_described(name, vehicle))
-    else:
-        _print(name, vehicle)
+        return
+    _print(name, vehicle)
+    say(f"picture: {out}")
+
+
+def _draw(described: Description, vehicle: Vehicle, speed: float, out: Path) -> None:
     from matplotlib import rc_context
 
     from trundle.report.canvas import STYLE
     from trundle.report.figures.vehicle_sheet import vehicle_sheet
 
-    aside = out.with_name(f".{out.stem}.part{out.suffix}")
-    try:
-        with rc_context(STYLE):
-            vehicle_sheet(described, vehicle, driven).savefig(aside, dpi=200)
-        aside.replace(out)
-    except OSError as error:
-        raise InputError(f"--out {str(out)!r}: cannot be written ({error.strerror})") from None
-    finally:
-        aside.unlink(missing_ok=True)
-    if not as_json:
-        print(f"picture: {out}")
+    with written_aside("--out", out) as aside, rc_context(STYLE):
+        vehicle_sheet(described, vehicle, speed).savefig(aside, dpi=200)
 
 
 def _print(name: str, vehicle: Vehicle) -> None:
@@ -98,11 +92,11 @@ def _print(name: str, vehicle: Vehicle) -> None:
         ),
     )
     frequencies = ", ".join(f"{f:.2f}" for f in vehicle.natural_frequencies())
-    print(f"natural frequencies on rigid ground: {frequencies} Hz")
-    print(f"source: {vehicle.source}")
-    print(f"confidence: {vehicle.confidence}")
+    say(f"natural frequencies on rigid ground: {frequencies} Hz")
+    say(f"source: {vehicle.source}")
+    say(f"confidence: {vehicle.confidence}")
     if vehicle.assumption:
-        print(f"assumed: {vehicle.assumption}")
+        say(f"assumed: {vehicle.assumption}")
 
 
 def _described(name: str, vehicle: Vehicle) -> dict[str, Any]:

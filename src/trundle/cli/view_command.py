@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from trundle.cli.aside import check_file
 from trundle.cli.export_command import Wanted, modes_to, played
 from trundle.cli.opened import open_path
+from trundle.cli.saying import say
 from trundle.cli.screen import progress_bar
 from trundle.errors import ComputationError, InputError
 from trundle.report.pages.view import write_view
@@ -16,6 +18,8 @@ __all__ = ["view"]
 
 def view(path: Path, out: Path | None, *, wanted: Wanted, crossing: bool, quiet: bool) -> None:
     """Write the page, and say where it is."""
+    place = out or Path(f"{path.resolve().stem}-view.html")
+    check_file("--out", place, [".html", ".htm"])
     opened = open_path(path, units=wanted.units)
     structure, study = opened.structure, opened.study
     told = ""
@@ -28,12 +32,11 @@ def view(path: Path, out: Path | None, *, wanted: Wanted, crossing: bool, quiet:
         title = structure.name if study is None else study.title
         scene = scene_of(structure, title=title, modes=modes, study=study, playback=playback)
         tell("writing", 1.0)
-        place = out or Path(f"{path.resolve().stem}-view.html")
         try:
             write_view(scene, place)
         except OSError as error:
             raise InputError(f"{place}: cannot be written ({error.strerror})") from None
     if not quiet:
         if told:
-            print(f"warning: {told}")
-        print(f"{place}: open it in a browser ({place.stat().st_size / 1e6:.1f} MB)")
+            say(f"warning: {told}")
+        say(f"{place}: open it in a browser ({place.stat().st_size / 1e6:.1f} MB)")

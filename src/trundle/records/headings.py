@@ -9,13 +9,17 @@ from trundle.errors import InputError
 from trundle.records.raw import Facts
 from trundle.units import motion_scale, to_si
 
-__all__ = ["Heading", "facts_of", "is_fact", "is_unit", "read_heading", "usual_unit"]
+__all__ = ["Heading", "facts_of", "is_fact", "is_unit", "read_heading", "tells_unit", "usual_unit"]
 
 _BRACKETS = re.compile(
     r"^\s*(?P<name>.*?)\s*(\[(?P<square>[^\[\]]+)\]|\((?P<round>(?:[^()]|\([^()]*\))+)\))\s*$"
 )
 _BEHIND = re.compile(r"^\s*(?P<name>.*?)(?:\s+in\s+|\s*/\s+|\s+/\s*|,\s+)(?P<unit>\S.*?)\s*$")
 _TAIL = re.compile(r"^\s*(?P<name>.*)[\s_](?P<unit>\S+)\s*$")
+_OF_MOTION = re.compile(
+    r"(?:^|[\s_.])(?:acc|accel|acceleration|beschl\w*|a|(?:acc)?[xyz]|a[xyz])(?:$|[\s_.\d])",
+    re.IGNORECASE,
+)
 _RANGE = re.compile(r"^\s*(?:\+-|\+/-|±)?\s*\d[\d.,]*\s*\S.*$")
 _SPELLINGS: tuple[tuple[str, str], ...] = (
     (r"^g['’]?s$|^G['’]?[sS]?$|^g_?n$", "g"),
@@ -50,6 +54,10 @@ _COUNT = re.compile(
     re.IGNORECASE,
 )
 _PAIR = re.compile(r"^[\s#%;!/'\"]*(?P<key>[^:=,;\t]+?)\s*(?:[:=,;\t]\s*|\s{2,})(?P<value>.+)$")
+_GROUPS = re.compile(r"\s*[1-9]\d{0,2}(?:[.,'’ \u00a0\u202f]\d{3})+(?![.,]?\d)")
+"""Digits in threes, as those of thousands stand, with a mark or a blank between them."""
+
+_SLOWEST, _FASTEST = 2.5, 1e5  # Hz: rates that show a band, and that sensors of floors have
 _NUMBER = re.compile(r"^\s*(?P<number>[\d.,eE+-]+)\s*[,;]?\s*(?P<unit>[^\d\s,;]\S*)?")
 
 
@@ -109,6 +117,17 @@ def is_unit(text: str) -> bool:
     return _is_motion(inner)
 
 
+def tells_unit(cell: str) -> bool:
+    """Return whether a heading of a column says a unit of motion or of time."""
+    unit = read_heading(cell, 0).unit
+    if _is_motion(unit):
+        return True
+    try:
+        return bool(unit) and to_si(f"1 {unit}", "time") > 0.0
+    except InputError:
+        return False
+
+
 def _is_motion(unit: str) -> bool:
     if not unit or unit[0].isdigit():
         return False
@@ -132,9 +151,17 @@ def read_heading(text: str, column: int) -> Heading:
         return Heading(name=name, unit=inner)
     for pattern in (_BEHIND, _TAIL):
         match = pattern.match(text)
-        if match is not None and match["name"].strip() and _is_motion(match["unit"].strip("()")):
-            return Heading(name=match["name"].strip(), unit=match["unit"].strip("()"))
+        if match is None or not match["name"].strip():
+            continue
+        name, unit = match["name"].strip(), match["unit"].strip("()")
+        if _is_motion(unit) and (pattern is _BEHIND or not _is_letter(name, unit)):
+            return Heading(name=name, unit=unit)
     return Heading(name=text or fallback)
+
+
+def _is_letter(name: str, unit: str) -> bool:
+    """Return whether a single letter behind a name counts places, as in Point G, and is no unit."""
+    return len(unit) == 1 and (unit != "g" or _OF_MOTION.search(name) is None)
 
 
 def is_fact(line: str) -> bool:
@@ -147,24 +174,49 @@ def is_fact(line: str) -> bool:
 def facts_of(lines: list[str]) -> Facts:
     """Read what lines above a table say: ``Sample rate: 500 Hz``, ``unit = mg``."""
     rate = step = n_samples = None
-    units: tuple[str, ...] = ()
+    units, unclear = tuple[str, ...](), ""
     for line in lines:
         match = _PAIR.match(line.strip())
         if match is None:
             continue
         key, value = match["key"].strip().strip('"'), match["value"].strip().strip('"')
         number = _number(value)
-        if _RATE.match(key) and number is not None:
+        if (_RATE.match(key) or _STEP.match(key)) and _is_unclear(key, value):
+            unclear = unclear or line.strip()
+        elif _RATE.match(key) and number is not None:
             rate = rate or _in_hertz(*number)
         elif _STEP.match(key) and number is not None:
             step = step or _in_seconds(*number)
-        elif _COUNT.match(key) and number is not None and number[0] == round(number[0]):
-            n_samples = int(number[0])
+        elif _COUNT.match(key):
+            n_samples = _count(value) or n_samples
         elif _UNIT.match(key):
             units = tuple(w.strip() for w in re.split(r"[\t;,]", value) if w.strip())
     if rate is None and step is not None:
         rate = 1.0 / step
-    return Facts(rate=rate, units=units, n_samples=n_samples)
+    return Facts(rate=rate, units=units, n_samples=n_samples, unclear=unclear)
+
+
+def _is_unclear(key: str, value: str) -> bool:
+    """Return whether a rate or a step has thousands, or decimals that may be such.
+
+    12,800 Hz is 12.8 Hz or 12800 Hz; 200.000 Hz is 200 Hz, for no sensor of floors has 200 kHz.
+    """
+    match = _GROUPS.match(value)
+    if match is None or not {*match[0].strip()} & {".", ","}:
+        return match is not None
+    unit = _NUMBER.match("1" + value[match.end() :])
+    number, of = float(re.sub(r"\D", "", match[0])), (unit["unit"] or "") if unit else ""
+    step = None if _RATE.match(key) else _in_seconds(number, of)
+    rate = _in_hertz(number, of) if step is None else 1.0 / step
+    return rate is not None and _SLOWEST <= rate < _FASTEST
+
+
+def _count(value: str) -> int | None:
+    """Return a whole number of samples, whatever stands between its thousands."""
+    if match := _GROUPS.match(value):
+        return int(re.sub(r"\D", "", match[0]))
+    number = _number(value)
+    return int(number[0]) if number is not None and number[0] == round(number[0]) else None
 
 
 def _number(text: str) -> tuple[float, str] | None:

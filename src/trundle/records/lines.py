@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -14,15 +12,15 @@ from jaxtyping import Int
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.records.headings import is_fact, is_unit
+from trundle.records.cells import cells_of, is_comment, is_number, trimmed
+from trundle.records.headings import is_unit, tells_unit
+from trundle.records.names_above import DECIMAL, Line, names_above, refuse_other_names
 from trundle.records.stamps import is_stamp
 
 __all__ = ["Layout", "cells_of", "find_table", "is_number", "text_of"]
 
 _MARKS = (";", "\t", ",", " ")  # between columns
-_COMMENTS = ("#", "%", ";", "//", "!", "'")
 _LOOKED_AT = 400  # lines in which a table must begin
-_WORDS = re.compile(r"[^\s\[\(]+\s*[\[\(][^\]\)]*[\]\)]|\S+")  # name [unit], or a word
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,6 +45,8 @@ class Layout:
         Their numbers in the file.
     left_out : list of tuple of (int, str)
         Lines behind it that hold words, with their numbers.
+    empty : tuple of int
+        Numbers of empty lines among its rows; none where one follows every row.
     """
 
     mark: str
@@ -57,6 +57,17 @@ class Layout:
     lines: list[str]
     numbers: Int[Array, " lines"]
     left_out: list[tuple[int, str]]
+    empty: tuple[int, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Run:
+    """Say where most rows of numbers stand together by a delimiter, and of how many columns."""
+
+    mark: str
+    length: int = 0
+    width: int = 0
+    first: int = 0
 
 
 def text_of(data: bytes, path: Path) -> str:
@@ -71,26 +82,6 @@ def text_of(data: bytes, path: Path) -> str:
         with suppress(UnicodeDecodeError):
             return data.decode(encoding)
     raise InputError(f"{path}: is not text; records are CSV, WAV, UFF 58 or miniSEED files")
-
-
-def cells_of(line: str, mark: str) -> list[str]:
-    """Return the cells of a line; none where it cannot be read."""
-    if mark == " ":
-        return _WORDS.findall(line)
-    try:
-        cells = next(csv.reader([line], delimiter=mark, skipinitialspace=True))
-    except (csv.Error, StopIteration):
-        return []
-    return cells
-
-
-def is_number(cell: str) -> bool:
-    """Return whether a cell holds a number, with a decimal point or comma."""
-    try:
-        float(cell.strip().replace(",", "."))
-    except ValueError:
-        return False
-    return True
 
 
 def find_table(text: str, path: Path) -> Layout:
@@ -109,17 +100,22 @@ def find_table(text: str, path: Path) -> Layout:
         No run of two lines of numbers, or a line in the table that is not like it.
     """
     every = text.splitlines()
-    numbers = np.array([i for i, s in enumerate(every, 1) if s.strip() and not _is_comment(s)])
+    numbers = _numbers_of_rows(every, "")
+    run = _best([every[i - 1] for i in numbers[:_LOOKED_AT]])
+    if run.mark == ";":  # which begins comments too
+        numbers = _numbers_of_rows(every, ";")
+        run = _best([every[i - 1] for i in numbers[:_LOOKED_AT]])
     plain = [every[i - 1] for i in numbers]
-    head = plain[:_LOOKED_AT]
-    (length, width, first), mark = _best(head)
-    if length < 1 or len(plain) - first < 2:
+    run = _as_named(run, every, numbers)
+    mark, width, first = run.mark, run.width, run.first
+    if run.length < 1 or len(plain) - first < 2:
         raise InputError(f"{path}: holds no samples: no two lines of numbers stand together")
-    _refuse_numbers_above(plain[:first], numbers, (mark, width), path)
+    _refuse_numbers_above(plain[: first + 1], numbers, run, path)
     end = _end_of_numbers(plain, mark)
-    above = [(i, s) for i, s in enumerate(every[: numbers[first] - 1], 1) if s.strip()]
-    heading, units, rest = _heading(above, mark, width)
-    if not heading and above and length < 2:
+    above = _above(every, int(numbers[first]))
+    refuse_other_names(above, plain[first], mark, width, path)
+    heading, units, rest = names_above(above, mark, width)
+    if not heading and above and run.length < 2:
         raise InputError(f"{path}: holds no samples: no two lines of numbers stand together")
     return Layout(
         mark=mark,
@@ -130,60 +126,99 @@ def find_table(text: str, path: Path) -> Layout:
         lines=plain[first:end],
         numbers=numbers[first:end],
         left_out=[(int(numbers[i]), plain[i]) for i in range(end, len(plain))],
+        empty=_empty(every, numbers[first:end]),
     )
 
 
+def _numbers_of_rows(every: list[str], mark: str) -> Int[Array, " lines"]:
+    """Return the numbers of lines that are neither empty nor comments."""
+    return np.array([i for i, s in enumerate(every, 1) if s.strip() and not is_comment(s, mark)])
+
+
+def _above(every: list[str], number: int) -> list[Line]:
+    """Return what stands above a line, with its numbers."""
+    return [(i, s) for i, s in enumerate(every[: number - 1], 1) if s.strip()]
+
+
+def _empty(every: list[str], numbers: Int[Array, " lines"]) -> tuple[int, ...]:
+    """Return the numbers of empty lines among rows; some programs put one behind every row."""
+    inside = range(int(numbers[0]), int(numbers[-1]))
+    found = tuple(i for i in inside if not every[i - 1].strip())
+    return found if len(found) != len(numbers) - 1 else ()
+
+
+def _as_named(run: _Run, every: list[str], numbers: Int[Array, " lines"]) -> _Run:
+    """Return the rows that a heading means where a comma may be decimal or between two columns."""
+    head = [every[i - 1] for i in numbers[:_LOOKED_AT]]
+    two, one = _run(head, ",", 1.0), _run(head, ";", 1.0)
+    if (run not in {two, one}) or two.width != 2 or one.width != 1 or two.length < 2:
+        return run
+    above = _above(every, int(numbers[min(two.first, one.first)]))
+    names, _, _ = names_above(above, ",", 2)
+    if names and not is_unit(names[1]):
+        return two
+    name, _, _ = names_above(above, ";", 1)
+    return one if any(map(tells_unit, name)) or any(map(DECIMAL.fullmatch, head)) else run
+
+
 def _refuse_numbers_above(
-    lines: list[str], numbers: Array, table: tuple[str, int], path: Path
+    lines: list[str], numbers: Int[Array, " lines"], run: _Run, path: Path
 ) -> None:
     """Refuse rows of numbers before the table: they are samples that would be lost."""
-    mark, width = table
-    for number, line in zip(numbers, lines, strict=False):
-        here = _width(line, mark, 1.0)
-        if here > 1:
-            raise InputError(
-                f"{path}: line {number} has {here} columns of numbers, and the table below it "
-                f"{width}; mend it, or put # before it"
-            )
+    widths = [_widths(line, run.mark, 1.0)[0] for line in lines[:-1]]
+    at = next((i for i, here in enumerate(widths) if here > 1 or here == run.width), None)
+    if at is None:
+        return
+    odd = next((i for i in range(at, len(widths)) if widths[i] != run.width), at)
+    if widths[odd]:
+        raise InputError(
+            f"{path}: line {numbers[odd]} has {widths[odd]} columns of numbers, and the table "
+            f"below it {run.width}; mend it, or put # before it"
+        )
+    raise InputError(
+        f"{path}: line {numbers[odd]}, {lines[odd].strip()[:40]!r}, is no row of numbers, and line "
+        f"{numbers[at]} above it is one; write nan for a sample that is missing, or put # before "
+        "what is none"
+    )
 
 
-def _best(head: Sequence[str]) -> tuple[tuple[int, int, int], str]:
-    """Return the longest run of rows and its delimiter; rows may hold words only if they must."""
+def _best(head: Sequence[str]) -> _Run:
+    """Return the longest run of rows; rows may hold words only if they must."""
     for share in (1.0, 0.5):
-        found = [(_run(head, mark, share), mark) for mark in _MARKS]
-        best = max(found, key=lambda one: one[0][:2])
-        if best[0][0] > 1 or len(head) < 2:
+        best = _longest(head, share)
+        if best.length > 1 or len(head) < 2:
             return best
-    return max(((_run(head, mark, 1.0), mark) for mark in _MARKS), key=lambda one: one[0][:2])
+    return _longest(head, 1.0)
 
 
-def _is_comment(line: str) -> bool:
-    return line.lstrip().startswith(_COMMENTS)
+def _longest(head: Sequence[str], share: float) -> _Run:
+    return max((_run(head, m, share) for m in _MARKS), key=lambda one: (one.length, one.width))
 
 
-def _run(lines: Sequence[str], mark: str, share: float) -> tuple[int, int, int]:
-    """Return length, width and first line of the longest run of like rows of numbers."""
-    best, start, width = (0, 0, 0), 0, 0
-    for i, line in enumerate(lines):
-        here = _width(line, mark, share)
-        if here == 0 or here != width:
+def _run(lines: Sequence[str], mark: str, share: float) -> _Run:
+    """Return the longest run of like rows of numbers; a last cell may be empty in some of them."""
+    widths = [_widths(line, mark, share) for line in lines]
+    best, start, width = _Run(mark=mark), 0, 0
+    for i, (here, whole) in enumerate(widths):
+        if here == 0 or width not in (here, whole):
             start, width = i, here
-        if width and i + 1 - start > best[0]:
-            best = (i + 1 - start, width, start)
+            while width and start and widths[start - 1][1] == width:
+                start -= 1
+        if width and i + 1 - start > best.length:
+            best = _Run(mark=mark, length=i + 1 - start, width=width, first=start)
     return best
 
 
-def _width(line: str, mark: str, share: float) -> int:
-    """Return the number of columns of a row, 0 where less than a share of it is numbers."""
-    cells = _trimmed(cells_of(line, mark), mark)
+def _widths(line: str, mark: str, share: float) -> tuple[int, int]:
+    """Return the number of columns of a row, without and with an empty one at its end.
+
+    Both are 0 where less than a share of it is numbers.
+    """
+    whole = cells_of(line, mark)
+    cells = trimmed(whole, mark)
     kinds = [is_number(cell) or not cell.strip() or is_stamp(cell) for cell in cells]
     some = any(is_number(cell) for cell in cells)
-    return len(cells) if some and sum(kinds) >= share * len(kinds) else 0
-
-
-def _trimmed(cells: list[str], mark: str) -> list[str]:
-    """Take off the empty cell behind a delimiter that some loggers put at the end of a line."""
-    return cells[:-1] if mark != " " and len(cells) > 1 and not cells[-1].strip() else cells
+    return (len(cells), len(whole)) if some and sum(kinds) >= share * len(kinds) else (0, 0)
 
 
 def _end_of_numbers(lines: list[str], mark: str) -> int:
@@ -192,47 +227,3 @@ def _end_of_numbers(lines: list[str], mark: str) -> int:
     while end > 1 and not any(is_number(c) or is_stamp(c) for c in cells_of(lines[end - 1], mark)):
         end -= 1
     return end
-
-
-def _heading(
-    above: list[tuple[int, str]], mark: str, width: int
-) -> tuple[list[str], list[str], list[tuple[int, str]]]:
-    """Return names, units and the other lines, of what stands above a table."""
-    lines = list(above)
-    while lines and not lines[-1][1].strip():
-        lines.pop()
-    units: list[str] = []
-    for at in range(len(lines) - 1, max(-1, len(lines) - 4), -1):
-        cells = _named(lines[at][1], mark, width)
-        if not cells:
-            continue
-        of_units = not units and at > 0 and all(is_unit(c) or not c.strip() for c in cells)
-        if of_units and _named(lines[at - 1][1], mark, width):
-            units = cells
-            continue
-        return cells, units, lines[:at] + [x for x in lines[at + 1 :] if not units]
-    return [], [], lines
-
-
-def _named(line: str, mark: str, width: int) -> list[str]:
-    """Return a line's cells if it can be a heading of so many columns."""
-    comment = _is_comment(line)
-    cells = _trimmed(cells_of(line.lstrip("#%;!/' \t") if comment else line, mark), mark)
-    cells = [cell.strip() for cell in cells]
-    if cells and cells[0].lower().rstrip(":") in {"headers", "header", "columns"}:
-        cells = cells[1:]
-    if not comment and len(cells) > width >= 2:
-        cells = cells[:width]  # a column of comments that the rows leave out
-    if len(cells) != width or all(is_number(cell) for cell in cells) or is_fact(line):
-        return []
-    return [] if comment and width == 1 and any(sign in cells[0] for sign in "=:") else cells
-
-
-def as_array(rows: Sequence[Sequence[str]], comma: bool) -> np.ndarray:
-    """Return cells as numbers; what is none becomes not-a-number."""
-    out = np.full((len(rows), len(rows[0])), np.nan)
-    for i, row in enumerate(rows):
-        for j, cell in enumerate(row):
-            with suppress(ValueError):
-                out[i, j] = float(cell.replace(",", ".") if comma else cell)
-    return out

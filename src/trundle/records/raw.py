@@ -24,11 +24,14 @@ class Facts:
         Unit of all channels, or of each in their order.
     n_samples : int or None
         How many samples it should hold.
+    unclear : str
+        A rate or step that can be read in two ways, as it is written; it is neither.
     """
 
     rate: float | None = None
     units: tuple[str, ...] = ()
     n_samples: int | None = None
+    unclear: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

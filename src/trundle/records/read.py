@@ -82,7 +82,7 @@ def read_record(path: Path, options: RecordOptions) -> Record:
         raise InputError(f"{path}: --full-scale is for WAV files; say --unit")
     if options.full_scale and options.unit:
         raise InputError(f"{path}: --full-scale says the unit too; leave --unit out")
-    stated = to_si(options.rate, "frequency") if options.rate else None
+    stated = _stated_rate(options.rate)
     raw = choose(_raw(data, path, options, stated), options.channel, str(path))
     if raw.whole and not options.full_scale:
         raise InputError(
@@ -91,6 +91,19 @@ def read_record(path: Path, options: RecordOptions) -> Record:
         )
     rate = _rate(raw, stated, path)
     return _record(raw, rate, options, path)
+
+
+def _stated_rate(text: str) -> float | None:
+    """Return the rate that the user says [Hz]; None if he does not."""
+    if not text:
+        return None
+    try:
+        rate = to_si(text, "frequency")
+    except InputError as error:
+        raise InputError(f"--rate {text!r}: {error}") from None
+    if rate <= 0.0:
+        raise InputError(f"--rate {text!r}: must be greater than 0")
+    return rate
 
 
 def _bytes_of(path: Path) -> bytes:
@@ -178,7 +191,10 @@ def _channel(raw: RawRecord, i: int, options: RecordOptions, rate: float) -> _Ch
     try:
         scale, quantity = motion_scale(usual_unit(unit), options.sensitivity)
     except InputError as error:
-        return _Channel(problem=f"cannot be used: {error}")
+        said = (
+            "" if unit == raw.units[i] else "--full-scale: " if options.full_scale else "--unit: "
+        )
+        return _Channel(problem=f"cannot be used: {said}{error}")
     fault = channel_fault(scale * raw.samples[i], rate)
     return _Channel(scale=scale, quantity=quantity, problem=fault)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from datetime import datetime
 from pathlib import Path
 
@@ -22,6 +23,7 @@ _BOTH = re.compile(
     r"(?P<clock>\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?\s*(?:[AP]M)?)\s*(?:Z|[+-]\d{2}:?\d{2})?$",
     re.IGNORECASE,
 )
+_ORDERS = ((2, 1, 0), (2, 0, 1), (0, 1, 2))  # of year, month and day: day, month or year first
 _DAY = 86400.0
 _GAP = 2.5  # usual steps: more is a hole that no curve between samples fills
 _SHARED = 1.5  # steps: what stamps are written to, from which on samples share one
@@ -52,31 +54,48 @@ def clock_seconds(columns: list[list[str]], path: Path) -> Float[Array, " steps"
         A stamp that cannot be read.
     """
     whole = [" ".join(parts).strip() for parts in zip(*columns, strict=True)]
-    days: dict[str, float] = {}
+    matches = [_BOTH.match(text) for text in whole]
+    dates = [both["date"] if both else "" for both in matches]
+    days = _days(list(dict.fromkeys(dates)))
     out = np.empty(len(whole))
-    for i, text in enumerate(whole):
-        both = _BOTH.match(text)
-        clock, date = (both["clock"], both["date"]) if both else (text, "")
+    for i, (text, date, both) in enumerate(zip(whole, dates, matches, strict=True)):
         try:
-            if date not in days:
-                days[date] = _day(date)
             # less the first day: a clock's digits would be lost beside 2000 years
-            out[i] = days[date] - next(iter(days.values())) + _seconds(clock)
-        except ValueError:
+            out[i] = days[date] - days[dates[0]] + _seconds(both["clock"] if both else text)
+        except (KeyError, ValueError):
             raise InputError(f"{path}: time stamp {i + 1}, {text!r}, cannot be read") from None
     if not any(days.values()):  # times of day alone go back at midnight
         out += _DAY * np.cumsum(np.concatenate([[0.0], np.diff(out) < -0.5 * _DAY]))
     return out - out[0]
 
 
-def _day(date: str) -> float:
-    """Return a date in seconds; the order of day and month of one record does not matter."""
-    if not date:
-        return 0.0
+def _days(dates: list[str]) -> dict[str, float]:
+    """Return the dates of a record in seconds, all read in one order of day, month and year.
+
+    Of orders that give days of the calendar, that counts by which the record is shortest: 05/11 to
+    05/12 is a night in May and no month from November on. Between points the day stands first.
+    Where no order reads all, dates from the first one on that cannot be read are left out.
+    """
+    found = [_read_days(dates, order) for order in _ORDERS]
+    most = max(map(len, found))
+    whole = [days for days in found if len(days) == most]
+    if "." in dates[0] or not most:
+        return whole[0]
+    return min(whole, key=lambda days: max(days.values()) - min(days.values()))
+
+
+def _read_days(dates: list[str], order: tuple[int, int, int]) -> dict[str, float]:
+    """Return dates in seconds, up to the first that is none in an order of year, month and day."""
+    found: dict[str, float] = {}
+    with suppress(ValueError):
+        for date in dates:
+            found[date] = _day(date, order) if date else 0.0
+    return found
+
+
+def _day(date: str, order: tuple[int, int, int]) -> float:
     parts = [int(part) for part in re.split(r"[-./]", date)]
-    year_first = parts[0] > 31
-    year, a, b = (parts[0], parts[1], parts[2]) if year_first else (parts[2], parts[1], parts[0])
-    month, day = (a, b) if a <= 12 else (b, a)
+    year, month, day = (parts[i] for i in order)
     return _DAY * datetime(year if year > 99 else 2000 + year, month, day).toordinal()
 
 

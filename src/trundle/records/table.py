@@ -12,8 +12,10 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import InputError
-from trundle.records.headings import Heading, facts_of, read_heading
-from trundle.records.lines import Layout, as_array, cells_of, find_table, is_number, text_of
+from trundle.records.cells import as_array, cells_of, is_number
+from trundle.records.headings import Heading, facts_of, read_heading, tells_unit
+from trundle.records.lines import Layout, find_table, text_of
+from trundle.records.names_above import DECIMAL, TWO_OR_ONE
 from trundle.records.raw import Facts, RawRecord
 from trundle.records.stamps import clock_seconds, even_rate, is_stamp, on_even_time
 from trundle.units import to_si
@@ -32,6 +34,7 @@ _SLOWEST = 2.5  # Hz: stamps without a unit that say less are not seconds
 _SCALES = (("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9))
 _CONTRADICTS = 0.05  # relative: a stated rate may be nominal, and no more than so far off
 _SAME = 0.005  # relative, between a stated rate and that of stamps
+_TWICE = "may have a decimal mark, or one between thousands"
 
 
 def read_table(data: bytes, path: Path, *, rate: float | None = None) -> RawRecord:
@@ -56,6 +59,7 @@ def read_table(data: bytes, path: Path, *, rate: float | None = None) -> RawReco
         No text, no table, uneven time.
     """
     layout = find_table(text_of(data, path), path)
+    _refuse_two_or_one(layout, path)
     facts = facts_of(list(layout.above))
     cells, table = _numbers(layout, path)
     if len(table) < 2:
@@ -79,6 +83,9 @@ def read_table(data: bytes, path: Path, *, rate: float | None = None) -> RawReco
         raise InputError(f"{path}: holds time and no channel")
     if not stamps and not counter:
         _refuse_unnamed_time(table, headings, path)
+        _refuse_empty(layout, path)
+    if not stamps and rate is None and facts.rate is None and facts.unclear:
+        raise InputError(f"{path}: {facts.unclear!r} above its table {_TWICE}; say it by --rate")
     samples, found = table[:, others].T.copy(), facts.rate
     if time is not None:
         found = even_rate(time, path, stated=rate or facts.rate)
@@ -98,6 +105,32 @@ def read_table(data: bytes, path: Path, *, rate: float | None = None) -> RawReco
         ranges=tuple(headings[i].range for i in others),
         notes=tuple(notes),
     )
+
+
+def _refuse_two_or_one(layout: Layout, path: Path) -> None:
+    """Refuse rows such as 4,507 where nothing says whether that is one number or two."""
+    if layout.width > 2 or (layout.width == 2 and (layout.heading or layout.mark != ",")):
+        return
+    if layout.width == 1 and any(map(tells_unit, layout.heading)):
+        return
+    commas = [line for line in layout.lines if "," in line]
+    if not commas or not all(map(TWO_OR_ONE.fullmatch, commas)):
+        return
+    if layout.width == 1 and any(map(DECIMAL.fullmatch, commas)):
+        return
+    raise InputError(
+        f"{path}: {commas[0].strip()!r} may be one number with a decimal comma, or two; write a "
+        "heading with units, such as 'z [mm/s2]' or 'time [s],z [mm/s2]'"
+    )
+
+
+def _refuse_empty(layout: Layout, path: Path) -> None:
+    """Refuse empty lines where no time shows whether samples are missing there."""
+    if layout.empty:
+        raise InputError(
+            f"{path}: line {layout.empty[0]} is empty, among samples without a time; write nan "
+            "there for each sample that is missing, or take it off"
+        )
 
 
 def _headings(layout: Layout, facts: Facts) -> list[Heading]:

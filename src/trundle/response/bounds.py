@@ -57,5 +57,7 @@ def upper_bounds(single: ArrayLike) -> UpperBounds:
 def percentile_rank(value: float, samples: ArrayLike) -> float:
     """Return the share of samples below a value, 0 to 100; ties count half."""
     array = np.asarray(samples, float)
+    if array.size == 0:
+        raise InputError("a rank needs at least one sample to be among")
     below = np.count_nonzero(array < value) + 0.5 * np.count_nonzero(array == value)
     return float(100.0 * below / array.size)

@@ -37,6 +37,7 @@ def reduce_record(
     quantities : iterable of SpectrumQuantity
         Spectra wanted beside that of velocity.
     """
+    horizontal = tuple(i for i, axis in enumerate(record.axes) if axis == "horizontal")
     motion, seen = wide_motion_of(record, high_pass=high_pass)
     displacement, velocity, acceleration = (np.ascontiguousarray(x.T)[None] for x in motion)
     n_steps, fs = velocity.shape[1], record.sampling_frequency
@@ -52,11 +53,9 @@ def reduce_record(
         method=f"measured {record.quantity}, high-pass {high_pass:g} Hz",
         f_max=0.5 * fs,
         warnings=record_warnings(record),
+        horizontal=horizontal,
     )
-    horizontal = [i for i, axis in enumerate(record.axes) if axis == "horizontal"]
-    reduced = reduce_runs(
-        wide, averaging=averaging, quantities=quantities, record=seen, horizontal=horizontal
-    )
+    reduced = reduce_runs(wide, averaging=averaging, quantities=quantities, record=seen)
     return _seen(wide, seen), _without_short_bands(reduced, record)
 
 

@@ -94,7 +94,7 @@ def reduce_runs(
     averaging: Averaging = "max_1s",
     quantities: Iterable[SpectrumQuantity] = (),
     record: slice | None = None,
-    horizontal: Sequence[int] = (),
+    horizontal: Sequence[int] | None = None,
     curves: Sequence[CurveLimit] = (),
 ) -> RunLevels:
     """Reduce the histories of some runs.
@@ -109,13 +109,15 @@ def reduce_runs(
         Spectra wanted beside that of velocity.
     record : slice, optional
         Steps that are looked at; those before and behind fill and empty the filters.
-    horizontal : sequence of int
-        Points that move sideways: weighted by Wd, and held against its base.
+    horizontal : sequence of int, optional
+        Points that move sideways: weighted by Wd, and held against its base; those that the runs
+        name unless given.
     curves : sequence of CurveLimit
         What is watched: for how long levels lie above.
     """
     fs, seen = runs.sampling_frequency, record or slice(None)
-    moved, sideways = np.moveaxis(runs.acceleration, 1, -1), list(horizontal)
+    moved = np.moveaxis(runs.acceleration, 1, -1)
+    sideways = list(runs.horizontal if horizontal is None else horizontal)
     felt = weight(moved, fs, "Wb")
     if sideways:
         felt[:, sideways] = weight(moved[:, sideways], fs, "Wd")
@@ -166,7 +168,7 @@ def reduce_on_scaled_roads(
     *,
     averaging: Averaging = "max_1s",
     quantities: Iterable[SpectrumQuantity] = (),
-    horizontal: Sequence[int] = (),
+    horizontal: Sequence[int] | None = None,
     curves: Sequence[CurveLimit] = (),
 ) -> list[RunLevels]:
     """Reduce some runs as they are on roads of other roughness.
@@ -183,7 +185,7 @@ def reduce_on_scaled_roads(
         Averaging rule of the band levels.
     quantities : iterable of SpectrumQuantity
         Spectra wanted beside that of velocity.
-    horizontal : sequence of int
+    horizontal : sequence of int, optional
         Points that move sideways, see `reduce_runs`.
     curves : sequence of CurveLimit
         What is watched: for how long levels lie above.

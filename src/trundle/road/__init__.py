@@ -2,6 +2,7 @@
 
 from trundle.road.features import Feature, Shape, Tread, laid
 from trundle.road.flatness import flat_floor
+from trundle.road.humps import Bump, CosineHump, RampKink
 from trundle.road.iso8608 import (
     CLASS_NAMES,
     FITTED_RANGE,
@@ -16,16 +17,7 @@ from trundle.road.iso8608 import (
 from trundle.road.plausibility import check_roughness, profile_doubts
 from trundle.road.profile import Beyond, Profile, ProfileReader
 from trundle.road.road import FeaturedRoad, MeasuredRoad, Road
-from trundle.road.shapes import (
-    Bump,
-    CableProtector,
-    CosineHump,
-    ExpansionJoint,
-    Patch,
-    Pothole,
-    RailCrossing,
-    RampKink,
-)
+from trundle.road.shapes import CableProtector, ExpansionJoint, Patch, Pothole, RailCrossing
 from trundle.road.survey import RoughnessFit, classify, fit_roughness, roughness_index
 from trundle.road.synthesis import RoughnessBand, synthesise, wave_power
 from trundle.road.temporal import temporal_psd, temporal_psd_two_sided

@@ -10,6 +10,7 @@ from jaxtyping import Float
 
 from trundle._checks import one_of, positive, set_frozen, within
 from trundle._typing import Array, ArrayLike
+from trundle.errors import InputError
 
 __all__ = [
     "CLASS_NAMES",
@@ -156,6 +157,8 @@ class RoadClass(_Random):
     def variance(self, n_min: float, n_max: float) -> float:
         """Return the elevation's variance over a band of spatial frequencies [m2]."""
         low, high = positive("n_min", n_min), positive("n_max", n_max)
+        if low > high:
+            raise InputError(f"n_max must be n_min, {low:g} cycle/m, or more; got {high:g} cycle/m")
         return float(band_power(self, np.array([low]), np.array([high]))[0])
 
     def __str__(self) -> str:

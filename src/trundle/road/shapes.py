@@ -1,34 +1,20 @@
-"""What discontinuities look like along a road: one class a kind.
+"""What joints, holes, plates and rails look like along a road: straight lines.
 
 Lengths are along the road [m], heights up positive [m]; walls are drawn over a chamfer of 2 mm.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from trundle._checks import finite, non_negative, positive, set_frozen
 from trundle.errors import InputError
+from trundle.road._outlines import WALL, check_ramps, height_of, lines, plateau
 from trundle.road.profile import Profile
 
-__all__ = [
-    "Bump",
-    "CableProtector",
-    "CosineHump",
-    "ExpansionJoint",
-    "Patch",
-    "Pothole",
-    "RailCrossing",
-    "RampKink",
-]
+__all__ = ["CableProtector", "ExpansionJoint", "Patch", "Pothole", "RailCrossing"]
 
-_WALL = 2e-3  # m: a wall is drawn over so much
 _WIDEST = 0.5  # m, of a gap
-_STEEPEST = 0.5  # m/m, of a ramp
-_CURVE = 33  # points to half a wave; the cubic between them is within 1e-7 of it
 RAIL_GAUGE = 1.435
 """Between the heads of rails of standard gauge [m]."""
 
@@ -63,9 +49,9 @@ class ExpansionJoint:
             set_frozen(self, runout=positive("runout", self.runout))
         if self.gap == 0.0 and self.step == 0.0:
             raise InputError("a joint has a gap or a step: give one")
-        if self.gap and not 2.0 * _WALL <= self.gap <= _WIDEST:
+        if self.gap and not 2.0 * WALL <= self.gap <= _WIDEST:
             raise InputError(
-                f"gap must be {2e3 * _WALL:g} mm to {_WIDEST:g} m; got {self.gap:g} m: a wider one "
+                f"gap must be {2e3 * WALL:g} mm to {_WIDEST:g} m; got {self.gap:g} m: a wider one "
                 "is a pothole"
             )
 
@@ -74,12 +60,14 @@ class ExpansionJoint:
         corners = [(0.0, 0.0)]
         if self.gap:
             low = -min(sinking, self.depth or sinking)
-            corners += [(_WALL, low), (self.gap - _WALL, low), (self.gap, self.step)]
+            # one corner and not two where the walls of the narrowest gap meet
+            below = dict.fromkeys([(WALL, low), (self.gap - WALL, low)])
+            corners += [*below, (self.gap, self.step)]
         else:
-            corners += [(_WALL, self.step)]
+            corners += [(WALL, self.step)]
         if self.runout is not None and self.step:
             corners += [(corners[-1][0] + self.runout, 0.0)]
-        return _lines(corners)
+        return lines(corners)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,22 +86,22 @@ class Patch:
 
     length: float
     height: float
-    ramp: float = _WALL
+    ramp: float = WALL
 
     def __post_init__(self) -> None:
         """Check that both ramps fit."""
         set_frozen(
             self,
             length=positive("length", self.length),
-            height=_some("height", self.height),
-            ramp=max(positive("ramp", self.ramp), _WALL),
+            height=height_of("height", self.height),
+            ramp=max(positive("ramp", self.ramp), WALL),
         )
-        _check_ramps(self.length, self.ramp)
+        check_ramps(self.length, self.ramp)
 
     def outline(self, sinking: float) -> Profile:
         """Return its height [m]."""
         del sinking
-        return _plateau(self.length, self.height, self.ramp)
+        return plateau(self.length, self.height, self.ramp)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,7 +120,7 @@ class Pothole:
 
     length: float
     depth: float
-    edge: float = _WALL
+    edge: float = WALL
 
     def __post_init__(self) -> None:
         """Check that both sides fit."""
@@ -140,124 +128,14 @@ class Pothole:
             self,
             length=positive("length", self.length),
             depth=positive("depth", self.depth),
-            edge=max(positive("edge", self.edge), _WALL),
+            edge=max(positive("edge", self.edge), WALL),
         )
-        _check_ramps(self.length, self.edge)
+        check_ramps(self.length, self.edge)
 
     def outline(self, sinking: float) -> Profile:
         """Return its height [m]."""
         del sinking
-        return _plateau(self.length, -self.depth, self.edge)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Bump:
-    """Hold a bump of half a sine: ``h sin(pi x / l)``.
-
-    Attributes
-    ----------
-    length : float
-        From foot to foot [m].
-    height : float
-        At its middle [m].
-    """
-
-    length: float
-    height: float
-
-    def __post_init__(self) -> None:
-        """Check both."""
-        set_frozen(
-            self, length=positive("length", self.length), height=_some("height", self.height)
-        )
-
-    def outline(self, sinking: float) -> Profile:
-        """Return its height [m]."""
-        del sinking
-        x = np.linspace(0.0, 1.0, _CURVE)
-        z = self.height * np.sin(np.pi * x)
-        slope = self.height * np.pi / self.length * np.cos(np.pi * x)
-        z[[0, -1]] = 0.0
-        return Profile(station=self.length * x, elevation=z, slope=slope, beyond="level")
-
-
-@dataclass(frozen=True, kw_only=True)
-class CosineHump:
-    """Hold a hump that begins and ends level: ``h (1 - cos(2 pi x / l)) / 2``.
-
-    Attributes
-    ----------
-    length : float
-        From foot to foot [m].
-    height : float
-        At its middle [m].
-    """
-
-    length: float
-    height: float
-
-    def __post_init__(self) -> None:
-        """Check both."""
-        set_frozen(
-            self, length=positive("length", self.length), height=_some("height", self.height)
-        )
-
-    def outline(self, sinking: float) -> Profile:
-        """Return its height [m]."""
-        del sinking
-        x = np.linspace(0.0, 1.0, 2 * _CURVE - 1)
-        z = 0.5 * self.height * (1.0 - np.cos(2.0 * np.pi * x))
-        slope = self.height * np.pi / self.length * np.sin(2.0 * np.pi * x)
-        z[[0, -1]] = 0.0
-        return Profile(station=self.length * x, elevation=z, slope=slope, beyond="level")
-
-
-@dataclass(frozen=True, kw_only=True)
-class RampKink:
-    """Hold a change of grade, rounded over a length, and the way until the road is level again.
-
-    Attributes
-    ----------
-    grade : float
-        Rise over run behind the kink [m/m], relative to the road before it.
-    length : float
-        From the kink until the road turns back into its former grade [m].
-    rounding : float
-        Length of the vertical curve at either end, half of it on each side of the kink [m].
-    """
-
-    grade: float
-    length: float
-    rounding: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check that both curves fit."""
-        set_frozen(
-            self,
-            grade=_some("grade", self.grade),
-            length=positive("length", self.length),
-            rounding=non_negative("rounding", self.rounding),
-        )
-        if abs(self.grade) > _STEEPEST:
-            raise InputError(
-                f"grade must be within {_STEEPEST:g} m/m; got {self.grade:g}: 5 % is 0.05"
-            )
-        if self.rounding > self.length:
-            raise InputError(
-                f"rounding must be at most the ramp's length, {self.length:g} m; got "
-                f"{self.rounding:g} m"
-            )
-
-    def outline(self, sinking: float) -> Profile:
-        """Return its height [m]; rounded by parabolas, it begins half a rounding early."""
-        del sinking
-        half, top = 0.5 * self.rounding, self.grade * self.length
-        if half == 0.0:
-            return _lines([(0.0, 0.0), (self.length, top)])
-        s = np.array([-half, half, self.length - half, self.length + half])
-        z = np.array([0.0, self.grade * half, top - self.grade * half, top])
-        slope = np.array([0.0, self.grade, self.grade, 0.0])
-        return Profile(station=s, elevation=z, slope=slope, beyond="level")
+        return plateau(self.length, -self.depth, self.edge)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -289,7 +167,7 @@ class RailCrossing:
         for name in ("flangeway", "depth", "head", "gauge"):
             set_frozen(self, **{name: positive(name, getattr(self, name))})
         set_frozen(self, proud=finite("proud", self.proud))
-        if self.gauge <= 2.0 * self.flangeway or min(self.flangeway, self.head) < 3.0 * _WALL:
+        if self.gauge <= 2.0 * self.flangeway or min(self.flangeway, self.head) < 3.0 * WALL:
             raise InputError(
                 f"a crossing of gauge {self.gauge:g} m has no room for heads of {self.head:g} m "
                 f"and grooves of {self.flangeway:g} m"
@@ -297,11 +175,11 @@ class RailCrossing:
 
     def outline(self, sinking: float) -> Profile:
         """Return its height [m]: head, groove, groove, head."""
-        low, up, w = -min(sinking, self.depth), self.proud, _WALL
+        low, up, w = -min(sinking, self.depth), self.proud, WALL
         a, b = self.head, self.head + self.flangeway
         near = [(0.0, 0.0), (w, up), (a - w, up), (a, low), (b - w, low), (b, 0.0)]
         whole = 2.0 * self.head + self.gauge
-        return _lines([*near, *((whole - s, z) for s, z in reversed(near))])
+        return lines([*near, *((whole - s, z) for s, z in reversed(near))])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -332,30 +210,9 @@ class CableProtector:
         )
         if self.top >= self.length:
             raise InputError(f"top must be below length, {self.length:g} m; got {self.top:g} m")
-        _check_ramps(self.length, 0.5 * (self.length - self.top))
+        check_ramps(self.length, 0.5 * (self.length - self.top))
 
     def outline(self, sinking: float) -> Profile:
         """Return its height [m]."""
         del sinking
-        return _plateau(self.length, self.height, 0.5 * (self.length - self.top))
-
-
-def _plateau(length: float, height: float, ramp: float) -> Profile:
-    return _lines([(0.0, 0.0), (ramp, height), (length - ramp, height), (length, 0.0)])
-
-
-def _lines(corners: Sequence[tuple[float, float]]) -> Profile:
-    return Profile.piecewise_linear(*np.array(corners).T, beyond="level")
-
-
-def _some(name: str, value: float) -> float:
-    if finite(name, value) == 0.0:
-        raise InputError(f"{name} must not be 0: there would be nothing")
-    return float(value)
-
-
-def _check_ramps(length: float, ramp: float) -> None:
-    if not _WALL <= ramp < 0.5 * length:
-        raise InputError(
-            f"its two sides of {ramp:g} m each do not fit into its length of {length:g} m"
-        )
+        return plateau(self.length, self.height, 0.5 * (self.length - self.top))

@@ -217,7 +217,7 @@ def entry_named(name: str, length: float | None = None) -> Entry:
             raise InputError(f"an abrupt entry has no length; got {length:g} m")
         return Abrupt()
     if name == "ramp":
-        return Ramp(length=length or 1.0)
+        return Ramp(length=1.0 if length is None else length)
     if name == "static":
-        return StaticStart(exit_length=length or 1.0)
-    return DriveIn(length=length or 3.0)
+        return StaticStart(exit_length=1.0 if length is None else length)
+    return DriveIn(length=3.0 if length is None else length)

@@ -9,7 +9,7 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from jaxtyping import Float
 
-from trundle._checks import finite, frozen_array, positive, set_frozen
+from trundle._checks import finite, frozen_array, non_negative, positive, set_frozen
 from trundle._typing import Array, ArrayLike
 from trundle.errors import InputError
 
@@ -41,7 +41,7 @@ class SpeedLaw(Protocol):
 
     @property
     def fastest(self) -> float:
-        """Largest speed [m/s]."""
+        """Largest speed [m/s]; infinity if there is none."""
         ...
 
     @property
@@ -149,8 +149,8 @@ class SteadyAcceleration:
 
     @property
     def fastest(self) -> float:
-        """Initial speed [m/s]; one that accelerates for ever has no largest."""
-        return self.initial
+        """Initial speed [m/s]; infinity where it accelerates, which it does for ever."""
+        return float("inf") if self.acceleration > 0.0 else self.initial
 
     @property
     def rests_from(self) -> float:
@@ -213,8 +213,8 @@ class SpeedOverTime:
         Raises
         ------
         InputError
-            Stations that do not rise, two stops behind each other, or a number of waits that is
-            not that of the stops.
+            Stations that do not rise, two stops behind each other, a wait below 0, or a number of
+            waits that is not that of the stops.
 
         Notes
         -----
@@ -233,7 +233,7 @@ class SpeedOverTime:
                 "give a speed between two stops"
             )
         stops = np.flatnonzero(v == 0.0)
-        lasting = tuple(waits) or (0.0,) * len(stops)
+        lasting = tuple(non_negative("wait", one) for one in waits) or (0.0,) * len(stops)
         if len(lasting) != len(stops):
             raise InputError(
                 f"waits gives {len(lasting)} times for {len(stops)} stations with speed 0"

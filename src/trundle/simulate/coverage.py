@@ -35,8 +35,8 @@ class Coverage:
     by : {"road", "forces"}
         What ends there: a road's waves, or forces that are known.
     partly_to : float or None
-        Frequency to which any of several sources excites, the largest of all [Hz]; None where that
-        is `excited_to`. Between the two a level is a lower bound: it can fail, and not pass.
+        Frequency to which any source excites in part, the largest of all [Hz]; None where that is
+        `excited_to`. Between the two a level is a lower bound: it can fail, and not pass.
     partly_by : {"road", "forces"}
         What ends there.
     """
@@ -84,11 +84,13 @@ class Coverage:
                 "the bands above: give harmonics or impulses that reach further, if there are any"
             )
         elif waves:
-            times = 10.0**0.05 * TOP_FREQUENCY / self.excited_to
+            above = "nothing excites" if self.partly_to is None else "not all of it excites"
+            tiny = float(np.finfo(float).tiny)
+            times = 10.0**0.05 * TOP_FREQUENCY / max(self.excited_to, tiny)
             found.append(
-                f"the road's waves end at {self.excited_to:.3g} Hz at this speed, and nothing "
-                "excites the bands above: raise n_max "
-                f"{times:.2g} times for {TOP_FREQUENCY:g} Hz, with a contact patch"
+                f"the road's waves end at {self.excited_to:.3g} Hz at this speed, and {above} "
+                f"the bands above: raise n_max {times:.2g} times for {TOP_FREQUENCY:g} Hz, with a "
+                "contact patch; the points of a survey would have to lie so much closer"
             )
         return tuple(found)
 
@@ -107,14 +109,16 @@ def coverage_of(sources: Sequence[Crossing | Source], ends: float) -> Coverage:
     # a force that is known altogether bounds nobody else's reach
     bounding = [i for i, source in enumerate(many) if not source.complete]
     reach = [source.excited_to(ends) for source in many]
-    most = int(np.argmax(reach))
+    partly = [source.partly_excited_to(ends) for source in many]
+    most = int(np.argmax(partly))
     least = min(bounding, key=lambda i: reach[i]) if bounding else most
+    further = most != least or _WHOLE * partly[most] > reach[least]
     return Coverage(
         excited_to=reach[least],
         leaves=max(source.leaves for source in many),
         ends=ends,
         by=_what(many[least]),
-        partly_to=reach[most] if most != least else None,
+        partly_to=partly[most] if further else None,
         partly_by=_what(many[most]),
     )
 

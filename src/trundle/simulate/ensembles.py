@@ -118,7 +118,7 @@ def batches(
     Runs
         The next runs, with their histories.
     """
-    size = batch or batch_size(layout)
+    size = batch_size(layout) if batch is None else count("batch", batch)
     for start in range(0, len(runs), size):
         part = runs[start : start + size]
         share = (start / len(runs), len(part) / len(runs))
@@ -199,6 +199,7 @@ def _runs_of(layout: Layout, record: Driven, seed: int) -> Runs:
         f_max=layout.f_max,
         coverage=layout.coverage,
         lifts=lifts,
+        horizontal=layout.horizontal,
         warnings=(*contact_warnings(float(np.mean(tension))), *layout.doubts),
     )
 

@@ -89,6 +89,7 @@ def lay_out(
         timeline=timeline,
         rows=rows,
         ground=floor.under(rows, point_rows(floor.floor, points), coupled=method.moves),
+        horizontal=tuple(i for i, spot in enumerate(_spots(points)) if spot.axis != "z"),
     )
     layout.ground.check(layout.wheels)
     return layout
@@ -125,9 +126,13 @@ def spot_rows(floor: Structure, spots: Spots) -> SparseMatrix:
     return rows.matrix(rows.value)
 
 
+def _spots(points: Mapping[str, Place]) -> list[Spot]:
+    return [place if isinstance(place, Spot) else Spot(*place) for place in points.values()]
+
+
 def _by_surface(points: Mapping[str, Place]) -> Iterator[Spots]:
     """Give points in their order, those that follow each other on one surface and axis together."""
-    spots = [place if isinstance(place, Spot) else Spot(*place) for place in points.values()]
+    spots = _spots(points)
     for (on, axis), some in itertools.groupby(spots, key=lambda spot: (spot.on, spot.axis)):
         yield Spots(xy=np.array([(spot.x, spot.y) for spot in some]), on=on, axis=axis)
 

@@ -45,6 +45,8 @@ class Layout:
         How they stand on the floor; None on rigid ground.
     ground : Ground
         What lies under them.
+    horizontal : tuple of int
+        Numbers of the points that are read along an axis of the plan.
     """
 
     sources: tuple[Source, ...]
@@ -54,6 +56,7 @@ class Layout:
     timeline: Timeline
     rows: StandingWheels | None
     ground: Ground
+    horizontal: tuple[int, ...] = ()
 
     @property
     def integration(self) -> Integration:

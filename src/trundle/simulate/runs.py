@@ -48,7 +48,8 @@ class Runs:
     time : ndarray of float, shape (n_steps,)
         Time since the start of the record [s].
     displacement, velocity, acceleration : ndarray of float, shape (n_runs, n_steps, n_points)
-        Vertical response at the points, up positive [m], [m/s], [m/s2].
+        Response at the points [m], [m/s], [m/s2]: vertical, up positive; level at those that are
+        `horizontal`.
     contact_forces : ndarray of float, shape (n_runs, n_steps, n_contacts)
         Forces under the wheels, positive when pressing on the floor [N].
     point_names, contact_names : tuple of str
@@ -65,6 +66,8 @@ class Runs:
         Which bands the road excites, and whether the vehicles have left.
     lifts : tuple of bool
         Which contacts would leave the floor rather than pull; all unless given.
+    horizontal : tuple of int
+        Numbers of the points that are read along an axis of the plan; none unless given.
     """
 
     time: Float[Array, " steps"]
@@ -80,6 +83,7 @@ class Runs:
     warnings: tuple[FitnessWarning, ...] = ()
     coverage: Coverage = field(default_factory=Coverage)
     lifts: tuple[bool, ...] | None = None
+    horizontal: tuple[int, ...] = ()
 
     @property
     def n_runs(self) -> int:
@@ -107,6 +111,14 @@ class Runs:
         if self.lifts is None:
             return np.ones(self.contact_forces.shape[2], dtype=bool)
         return np.array(self.lifts, dtype=bool)
+
+    @property
+    def ways(self) -> tuple[str, ...] | None:
+        """Whether each point's motion is vertical or horizontal; None where all are vertical."""
+        if not self.horizontal:
+            return None
+        points = range(len(self.point_names))
+        return tuple("horizontal" if i in self.horizontal else "vertical" for i in points)
 
     def point(self, name: str) -> int:
         """Return the place of a point along the last axis, by its name."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import TypeAlias
@@ -44,7 +45,7 @@ def _typed(study: Study) -> Typed:
         yield from _plan(study.plan)
     if study.building is not None:
         yield from _building(study.building)
-    for name, vehicle in {d.vehicle.name: d.vehicle for d in study.drives.values()}.items():
+    for name, vehicle in _vehicles(study):
         yield from _vehicle(f"vehicle.{name}", vehicle)
     for name, drive in study.drives.items():
         yield from _drive(f"route {name!r}", drive)
@@ -61,6 +62,16 @@ def _typed(study: Study) -> Typed:
             yield place, "damping of an isolator", isolation.damping_ratio
     for method in study.methods:
         yield from _method(f"method {method.name!r}", method)
+
+
+def _vehicles(study: Study) -> Iterator[tuple[str, Vehicle]]:
+    """Give each vehicle that drives, by its name in the file: all of a kind have one title."""
+    routes = tomllib.loads(study.text).get("route", [])
+    names = {route["name"]: route["vehicle"] for route in routes}
+    yield from dict.fromkeys(
+        (names.get(route, drive.vehicle.name), drive.vehicle)
+        for route, drive in study.drives.items()
+    )
 
 
 def _plan(plan: FloorPlan) -> Typed:

@@ -119,8 +119,10 @@ def assembled(
         place = axle.setback, axle.lateral
         # of independent wheels, the right one stands for both
         parts.suspended.append(((axle.body, *place), (part, *place)))
+    number = len(axles) + 1
     for bogie in bogies:
-        _put_bogie(parts, bogie)
+        _put_bogie(parts, bogie, number)
+        number += len(bogie.wheels)
     rows = _Rows(parts.bodies)
     mass, weight = _masses(parts.bodies, lumped, rows)
     stiffness, damping = _springs(parts, rows)
@@ -198,7 +200,8 @@ def _side(parts: _Parts, axle: Axle, at: float) -> int:
     return _new(parts, Body(mass=0.5 * axle.axle_mass, centre=axle.setback, aside=at))
 
 
-def _put_bogie(parts: _Parts, bogie: Bogie) -> None:
+def _put_bogie(parts: _Parts, bogie: Bogie, first: int) -> None:
+    """Put a bogie in, whose axles are numbered on from a number."""
     beam = _new(
         parts,
         Body(mass=bogie.mass, pitch_inertia=bogie.pitch_inertia, centre=bogie.setback),
@@ -211,10 +214,10 @@ def _put_bogie(parts: _Parts, bogie: Bogie) -> None:
             damping=bogie.damping,
         )
     )
-    for wheel in bogie.wheels:
+    for number, wheel in enumerate(bogie.wheels, start=first):
         parts.contacts.append(
             Contact(
-                name=f"axle {len(parts.contacts) + 1}",
+                name=f"axle {number}",
                 part=beam,
                 setback=bogie.setback + wheel,
                 lateral=0.0,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float
 
-from trundle._checks import finite, non_negative, positive, set_frozen
+from trundle._checks import count, finite, non_negative, positive, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
 
@@ -42,15 +42,14 @@ class OutOfRound:
     axle: int | None = None
 
     def __post_init__(self) -> None:
-        """Check signs."""
+        """Check signs, and that whole waves go round a wheel."""
         set_frozen(
             self,
             amplitude=positive("amplitude", self.amplitude),
             radius=positive("radius", self.radius),
+            order=count("order", self.order),
             phase=finite("phase", self.phase),
         )
-        if self.order < 1:
-            raise InputError(f"order must be 1 or more; got {self.order}")
 
     def lift(
         self, station: Float[Array, " steps"]
@@ -106,9 +105,12 @@ class BodyForce:
         set_frozen(
             self,
             amplitude=positive("amplitude", self.amplitude),
+            setback=finite("setback", self.setback),
+            aside=finite("aside", self.aside),
             frequency=non_negative("frequency", self.frequency),
             order=non_negative("order", self.order),
             radius=non_negative("radius", self.radius),
+            phase=finite("phase", self.phase),
         )
         if not self.during[0] < self.during[1]:
             raise InputError(

@@ -90,6 +90,15 @@ class LumpedMass:
     setback: float
     aside: float = 0.0
 
+    def __post_init__(self) -> None:
+        """Check that it weighs something, and its place."""
+        set_frozen(
+            self,
+            mass=positive("lumped mass", self.mass),
+            setback=finite("setback", self.setback),
+            aside=finite("aside", self.aside),
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class Hinge:
@@ -108,6 +117,10 @@ class Hinge:
     bodies: tuple[int, int]
     setback: float
     rolls_together: bool = True
+
+    def __post_init__(self) -> None:
+        """Check its place."""
+        set_frozen(self, setback=finite("setback", self.setback))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -266,6 +279,7 @@ class Unit:
 
     def __post_init__(self) -> None:
         """Check that it has a length."""
+        set_frozen(self, lead=finite("lead", self.lead), pivot=finite("pivot", self.pivot))
         if self.pivot - self.lead <= 0.0:
             raise InputError(
                 f"a unit that is led at {self.lead:g} m pivots behind it; got {self.pivot:g} m"

@@ -183,6 +183,14 @@ class Crossing:
         return self.entry.lead(self.driven.length)
 
     @property
+    def fastest(self) -> float:
+        """Largest speed on its way [m/s]; of one that speeds up for ever, where it leaves."""
+        law = self.route.law
+        if np.isfinite(law.fastest):
+            return law.fastest
+        return float(np.max(law.speed(self._clock())))
+
+    @property
     def run_in_time(self) -> float:
         """Time driven on rigid ground before time 0 [s]."""
         speed = float(self.route.law.speed(0.0))

@@ -18,6 +18,7 @@ from trundle.simulate.sources.axle_hop import axle_hop_warnings
 from trundle.simulate.sources.crossing import Crossing
 from trundle.simulate.sources.given_road import GivenRoad, given_road, given_road_doubts
 from trundle.simulate.sources.random_road import RandomRoad
+from trundle.simulate.sources.reach import road_reach
 from trundle.simulate.sources.source import Source, WaveSet
 from trundle.simulate.sources.waves import waves_under
 from trundle.simulate.sources.within import check_within, forces_within, lifts_of_wheels
@@ -180,15 +181,19 @@ class Passage:
 
     def excited_to(self, ends: float) -> float:
         """Return where the waves of the road end under the vehicle [Hz]."""
+        return self._fastest_until(ends) * road_reach(self.crossing).whole
+
+    def partly_excited_to(self, ends: float) -> float:
+        """Return to where the road holds some waves under the vehicle [Hz]."""
+        speed = self._fastest_until(ends)
+        return speed * road_reach(self.crossing).partly if speed > 0.0 else 0.0
+
+    def _fastest_until(self, ends: float) -> float:
+        """Return the largest speed on the way, in a record of a length [m/s]."""
         crossing = self.crossing
-        clock = np.linspace(0.0, max(0.0, ends - crossing.depart), 201)
-        speed = float(np.max(crossing.route.law.speed(clock)))
-        if crossing.road.spectrum is not None:
-            return speed * crossing.band.n_max
-        profile = crossing.road.under(float(crossing.driven.lateral[0]), crossing.tread(0))
-        apart = np.diff(np.zeros(0) if profile is None else profile.station)
-        # samples hold no wave shorter than two; of a few points nobody knows what they hold
-        return speed * 0.5 / float(apart[apart > 0.0].min(initial=np.inf))
+        until = min(ends, crossing.exit_time) - crossing.depart
+        clock = np.linspace(0.0, max(0.0, until), 201)
+        return float(np.max(crossing.route.law.speed(clock)))
 
     def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
         """Refuse a given profile that the step cannot show; return doubts about one."""
@@ -271,7 +276,7 @@ def _not_linear(crossing: Crossing) -> list[FitnessWarning]:
 def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
     if crossing.road.spectrum is None:
         return []
-    speed = crossing.route.law.fastest
+    speed = crossing.fastest
     n_max = crossing.band.n_max
     if n_max > FITTED_RANGE[1] * (1 + 1e-9):
         message = (
@@ -290,7 +295,7 @@ def _extrapolation(crossing: Crossing) -> list[FitnessWarning]:
 
 def _mesh_passing(crossing: Crossing, structure: Structure, modes: Modes | None) -> FitnessWarning:
     size = min(structure.surface(on).element_size for on in crossing.route.visited)
-    speed = crossing.route.law.fastest
+    speed = crossing.fastest
     passing = speed / size * np.arange(1, _HARMONICS + 1)
     note = f"hat functions of {size:.3g} m are passed at {speed / size:.3g} Hz and its multiples"
     if modes is not None:

@@ -185,6 +185,10 @@ class Source(Protocol):
         """Return to which frequency it excites a structure in a record of a length [s]."""
         ...
 
+    def partly_excited_to(self, ends: float) -> float:
+        """Return to which it does so in part, so that levels are lower bounds; no less."""
+        ...
+
     def check(self, dt: float, duration: float | None) -> tuple[FitnessWarning, ...]:
         """Refuse what a step [s] cannot show, before work starts; return doubts about it."""
         ...
@@ -228,6 +232,10 @@ class KnownForces:
         """Return none."""
         del time, begins, n_waves
         return ()
+
+    def partly_excited_to(self: Source, ends: float) -> float:
+        """Return to which frequency it excites: its forces are all that there is of it."""
+        return self.excited_to(ends)
 
     def stands_at(self: Source, time: float) -> tuple[tuple[float, float] | None, int]:
         """Return where its first contact stands at a time, None when off; and how many stand."""

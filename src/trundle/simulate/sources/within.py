@@ -23,7 +23,7 @@ def check_within(crossing: Crossing, dt: float) -> None:
     InputError
         A frequency above 0.4 of the steps a second.
     """
-    vehicle, speed = crossing.driven, crossing.route.law.fastest
+    vehicle, speed = crossing.driven, crossing.fastest
     turning = speed / (2.0 * np.pi)
     shaken = [(f"force {f.name!r}", f.frequency) for f in vehicle.forces if f.frequency]
     shaken += [

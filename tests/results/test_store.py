@@ -20,7 +20,7 @@ from made_results import (
     with_assessment,
 )
 from trundle.results.cells import CellKey
-from trundle.results.store import summary_rows, write_results
+from trundle.results.store import csv_rows, write_results
 from trundle.simulate import TruncationChange
 
 SOUTH = "=Zufahrt, Süd"
@@ -78,7 +78,7 @@ def table(out, name):
 
 def test_percentiles_are_those_of_the_runs_in_si(result):
     """By hand: of 1, 2 and 3 gal 5 % lie at 1.1, half at 2, 95 % at 2.9 gal, here in m/s2."""
-    row = next(r for r in summary_rows(result) if (r["case"], r["point"]) == (SOUTH, "tool"))
+    row = next(r for r in csv_rows(result) if (r["case"], r["point"]) == (SOUTH, "tool"))
     assert row["runs"] == 3
     shares = [row[f"peak_acceleration_p{n}_m_s2"] for n in ("05", "50", "95")]
     assert shares == pytest.approx([0.011, 0.02, 0.029])
@@ -88,13 +88,13 @@ def test_percentiles_are_those_of_the_runs_in_si(result):
 
 def test_three_runs_bound_no_high_percentile(result):
     """0.95^3 is far above 2.5 %: the upper end of the 95 % level is open, and said to be."""
-    row = next(summary_rows(result))
+    row = next(csv_rows(result))
     assert row["peak_acceleration_p95_high_m_s2"] == np.inf
 
 
 def test_each_point_has_its_own_row_and_numbers(result):
     """The second point moves a hundred times as much, and its row says so; cells in their order."""
-    rows = list(summary_rows(result))
+    rows = list(csv_rows(result))
     assert [r["point"] for r in rows] == list(POINTS) * 6
     assert [r["case"] for r in rows[::4]] == ["main", SOUTH, "both"]
     both = {r["point"]: r for r in rows if (r["case"], r["road"]) == (SOUTH, "B")}
@@ -107,7 +107,7 @@ def test_each_point_has_its_own_row_and_numbers(result):
 
 def test_the_table_of_summaries_is_what_the_rows_say(result, out):
     """Read back from the file, number by number, in the same columns; names are not run by a sheet."""
-    rows, read = list(summary_rows(result)), table(out, "summary.csv")
+    rows, read = list(csv_rows(result)), table(out, "summary.csv")
     assert list(read[0]) == list(rows[0])
     for row, one in zip(rows, read, strict=True):
         assert one["case"] == (f"'{SOUTH}" if row["case"] == SOUTH else row["case"])

@@ -103,10 +103,10 @@ def _print_comparison(result: StudyResult) -> None:
                 row.road,
                 row.method,
                 f"{row.printed_peak:.3g}",
-                _spread(row.peak),
+                _with_range(row.peak),
                 f"{row.peak_rank:.0f} %",
                 f"{row.printed_rms:.5g}",
-                _spread(row.rms),
+                _with_range(row.rms),
                 f"{row.rms_rank:.0f} %",
             )
             for row in comparison_rows(result)
@@ -120,14 +120,14 @@ def _print_summary(result: StudyResult) -> None:
         f"Median (5-95 %) of {result.study.runs} runs",
         ("vehicle on", "class", "method", "point", *summary_headings()),
         (
-            (row.case, row.road, row.method, row.point, *map(_spread, row.ranges))
+            (row.case, row.road, row.method, row.point, *map(_with_range, row.ranges))
             for row in summary_rows(result)
         ),
         text_columns=4,
     )
 
 
-def _spread(values: tuple[float, float, float]) -> str:
+def _with_range(values: tuple[float, float, float]) -> str:
     low, middle, high = values
     return f"{written(middle)} ({written(low)}-{written(high)})"
 

@@ -23,7 +23,7 @@ class Multiplies(Protocol):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Rows and columns."""
+        """Number of rows and of columns."""
         ...
 
     def __matmul__(self, block: Array) -> Array:
@@ -41,12 +41,12 @@ class Pencil(Protocol):
 
     @property
     def mass(self) -> Product:
-        """M."""
+        """The mass M."""
         ...
 
     @property
     def stiffness(self) -> Product:
-        """K."""
+        """The stiffness K."""
         ...
 
     def factorise(self, shift: float) -> Factor:

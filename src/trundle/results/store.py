@@ -20,7 +20,7 @@ from trundle.results.folder import keep_result
 from trundle.results.results_folder import uninterrupted
 from trundle.results.study_result import StudyResult, positions_at
 
-__all__ = ["summary_rows", "write_results"]
+__all__ = ["csv_rows", "write_results"]
 
 
 def write_results(result: StudyResult, folder: Path) -> None:
@@ -28,7 +28,7 @@ def write_results(result: StudyResult, folder: Path) -> None:
     keep_result(result, folder)
     with uninterrupted():
         _write_zarr(result, folder / "results.zarr")
-    rows, verdicts = list(summary_rows(result)), list(_verdict_rows(result))
+    rows, verdicts = list(csv_rows(result)), list(_verdict_rows(result))
     _write_rows(folder / "summary.csv", rows)
     more = {
         "verdicts": verdicts,
@@ -66,7 +66,7 @@ def _flat(row: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
-def summary_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
+def csv_rows(result: StudyResult) -> Iterator[dict[str, Any]]:
     """Return one row a cell and point: percentiles in SI."""
     for key, cell in result.cells.items():
         for i, point in enumerate(result.study.points):

@@ -23,6 +23,7 @@ from trundle.run.estimate import seconds_of_modes, size_of
 from trundle.run.executor import Batch, Executor, carry_out
 from trundle.run.floors import Floors
 from trundle.run.jobs import Job, plan_jobs, prepare_job
+from trundle.run.memory import give_back
 from trundle.run.mesh_light import mesh_change
 from trundle.run.mode_cache import modes_of
 from trundle.run.progress import Bar
@@ -61,7 +62,8 @@ def run_study(
         RunLevels results; the same study gives the same bits, whoever computes it.
     """
     tell = tell or silent
-    store = store if store is not None else InMemory()
+    give_back()
+    store if store is not None else InMemory()
     jobs = plan_jobs(study)
     of_modes = seconds_of_modes(study, jobs)
     costs = {t.name: t.seconds(size_of(study, job)) for job in jobs for t in tasks_of(job)}

@@ -62,7 +62,7 @@ class StudyFile:
 
     @property
     def acting(self) -> set[str]:
-        """Names of all that can act on the floor, also of those with mistakes."""
+        """All names of what can act on the floor, also of those with mistakes."""
         return {name for kind in ("route", *self.shaking) for name in self.declared.get(kind, ())}
 
     def place_of(self, name: str, *kinds: str) -> str:

@@ -113,7 +113,7 @@ class Draft:
 
     @property
     def acting(self) -> set[str]:
-        """Names of all that can act on the floor, also of what has mistakes."""
+        """All names of what can act on the floor, also of what has mistakes."""
         return self.file.acting | set(self.sources)
 
     @property

@@ -111,7 +111,7 @@ class RigidGround:
         return empty, empty, empty
 
 
-def _spread(weights: Array) -> Array:
+def _block_diagonal(weights: Array) -> Array:
     """Return (n, n * width) with the weights of each of n wheels in its own block."""
     n, width = weights.shape
     out = np.zeros((n, n, width))
@@ -207,7 +207,7 @@ class FullFloor:
     def compliance(self, step: int) -> tuple[Array, Array]:
         """Return the sinking and its rate under wheel i for a unit force of wheel j."""
         under = self._at(step)
-        value, slope = _spread(under.value), _spread(under.slope)
+        value, slope = _block_diagonal(under.value), _block_diagonal(under.slope)
         at = self._places(step)
         unit = self._unit_at_route[np.ix_(at, at)]
         pressed = unit @ value.T * self._at(step).load_share
@@ -219,7 +219,9 @@ class FullFloor:
         self, step: int, state: State, motion: Prediction, forces: Array, *, applied: bool
     ) -> State:
         """Return the state at the step's end."""
-        load = _spread(self._at(step).value).T @ (self._at(step).load_share[:, None] * forces)
+        load = _block_diagonal(self._at(step).value).T @ (
+            self._at(step).load_share[:, None] * forces
+        )
         if isinstance(motion, HalfStep):
             assert self._halves is not None  # only they leave a step half done
             for wheel, force in enumerate(np.split(load, self._n)):

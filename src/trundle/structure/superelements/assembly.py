@@ -180,8 +180,10 @@ def join(
 
     Parameters
     ----------
-    parts, placed
-        The distinct parts, and where they stand.
+    parts : sequence of Superelement
+        The distinct parts.
+    placed : sequence of Placed
+        Where they stand.
     n_dofs : int
         Number of free dofs of the structure.
     f_seams : float

@@ -123,8 +123,10 @@ def shares_in_halves(
 
     Parameters
     ----------
-    groups, nodes
-        The structure.
+    groups : sequence of Elements
+        All elements of the structure.
+    nodes : ndarray of float, shape (n_nodes, 3)
+        Its nodes [m].
     largest : int
         Number of nodes that a piece may have, about.
     """

@@ -76,7 +76,7 @@ class _Product:
 
     @property
     def shape(self) -> tuple[int, int]:
-        """Rows and columns."""
+        """Number of rows and of columns."""
         return self.pencil.n_coordinates, self.pencil.n_coordinates
 
     def __matmul__(self, block: Array) -> Array:

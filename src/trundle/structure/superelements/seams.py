@@ -142,8 +142,10 @@ def seam_shapes(
         The seam.
     short : sequence of Seam
         Those that keep their dofs.
-    parts, placed
-        The distinct parts, and each piece.
+    parts : sequence of Superelement
+        The distinct parts.
+    placed : sequence of Placed
+        Each piece.
     boundaries : sequence of Boundary
         Of each piece.
     f_max : float

@@ -182,12 +182,12 @@ class PartedStructure:
 
     @cached_property
     def pieces(self) -> Sorted:
-        """Its parts, the distinct ones by their own."""
+        """The parts of it, the distinct ones by their own."""
         return sorted_pieces(self.whole, self.parting.shares(self.whole))
 
     @cached_property
     def joined(self) -> Joined:
-        """It by its reduced parts."""
+        """The same, by its reduced parts."""
         return self.reduced()
 
     def reduced(self, *, tell: Tell = silent) -> Joined:

@@ -63,7 +63,7 @@ def run_study(
     """
     tell = tell or silent
     give_back()
-    store if store is not None else InMemory()
+    store = store if store is not None else InMemory()
     jobs = plan_jobs(study)
     of_modes = seconds_of_modes(study, jobs)
     costs = {t.name: t.seconds(size_of(study, job)) for job in jobs for t in tasks_of(job)}

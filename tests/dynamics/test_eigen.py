@@ -132,6 +132,7 @@ def test_an_unknown_backend_is_refused():
         factorise(sparse.csc_array(np.eye(2)), backend="magic")
 
 
+@pytest.mark.longest
 def test_a_missing_mode_is_noticed(monkeypatch):
     """If inertia counts one mode more than are found, nothing is returned."""
     from trundle.dynamics import eigen
@@ -144,6 +145,36 @@ def test_a_missing_mode_is_noticed(monkeypatch):
     )
     with pytest.raises(ConvergenceError):
         natural_modes(floor.mass, floor.stiffness, f_max=20.0)
+
+
+@pytest.mark.longest
+def test_what_a_slice_has_missed_is_hunted_down(monkeypatch):
+    """A chain of 6500 masses, ``omega_j = 2 sqrt(k / m) sin(j pi / 2 / 6501)``, whose first slice
+    loses one of its modes: inertia tells, and the march goes back and finds it."""
+    from trundle.dynamics import lanczos
+
+    n, k, m = 6500, 1e6, 10.0
+    chain = sparse.diags_array(
+        [2 * k * np.ones(n), -k * np.ones(n - 1), -k * np.ones(n - 1)], offsets=[0, 1, -1]
+    )
+    near, lost = lanczos._near, []
+
+    def one_less(*args):
+        part = near(*args)
+        if lost:
+            return part
+        lost.append(part.eigenvalues[7])
+        stays = np.arange(len(part.eigenvalues)) != 7
+        return lanczos.EigenSlice(eigenvalues=part.eigenvalues[stays], shapes=part.shapes[:, stays])
+
+    monkeypatch.setattr(lanczos, "_near", one_less)
+    exact = 2 * np.sqrt(k / m) * np.sin(np.arange(1, n + 1) * np.pi / 2 / (n + 1))
+    f_max = 0.5 * (exact[599] + exact[600]) / (2 * np.pi)
+    found = natural_modes(
+        sparse.csc_array(m * sparse.eye_array(n)), sparse.csc_array(chain), f_max=f_max
+    )
+    assert len(lost) == 1
+    np.testing.assert_allclose(found.omega, exact[:600], rtol=1e-8)
 
 
 @pytest.mark.parametrize("backend", available_backends())

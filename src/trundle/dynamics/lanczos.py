@@ -35,6 +35,7 @@ _SLICE = 320  # modes looked for at one shift
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any floor mode
 _USUAL_SUBSPACE = 2.3  # columns a mode takes to converge; looking earlier costs time
 _ACCURATE = 1e-11  # relative error of an inverse eigenvalue that counts as converged
+_SHORTEST = 80  # modes of a slice below which a march is given up
 _EDGES = 16  # last modes of a slice among which the widest gap is its end
 _MIDDLE = 0.62  # of the highest frequency: as many modes above as below, with what each costs
 _EQUAL = 1e-5  # relative distance of eigenvalues that may be copies of one
@@ -115,30 +116,60 @@ def _march(
     shift: Shift | None,
     keep: Callable[[int, EigenSlice], None],
 ) -> None:
-    found, wanted, edge = interval.first, interval.end, interval.edge
-    last = np.array([edge])
-    while found < wanted:
-        if shift is None:
-            shift = _next_shift(pencil, interval, found, last, edge)
-        left = shift.below - found
-        right = min(wanted - shift.below, max(BLOCK, _share(wanted - found) - left))
-        whole = shift.below + right == wanted
-        part = _near(pencil.mass, shift, left, right, (edge, interval.limit if whole else np.inf))
-        edge = interval.limit
-        if not whole:
-            part, edge = _up_to_a_gap(part)
-            if _copies(part.eigenvalues) >= BLOCK:
-                part = _completed(pencil, shift, part, (last[-1], edge), found)
-        _check(part, last[-1], edge)
-        keep(found, part)
-        found += len(part.eigenvalues)
-        last = part.eigenvalues
+    start = _Reached(found=interval.first, edge=interval.edge, last=np.array([interval.edge]))
+    reached, most = [start], _SLICE
+    while reached[-1].found < interval.end:
+        try:
+            part, edge = _next_slice(pencil, interval, reached[-1], shift, most)
+        except ConvergenceError:
+            # inertia counts others than were found, here or in the slice before: both anew, shorter
+            most //= 2
+            if most < _SHORTEST:
+                raise
+            if len(reached) > 1:
+                reached.pop()
+            shift = None
+            continue
         shift = None  # its factor goes before the next is made
+        found = reached[-1].found
+        keep(found, part)
+        reached.append(
+            _Reached(found=found + len(part.eigenvalues), edge=edge, last=part.eigenvalues)
+        )
 
 
-def _share(remaining: int) -> int:
-    """Return how many of the remaining modes one shift is to find."""
-    return -(-remaining // max(1, -(-remaining // _SLICE)))
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Reached:
+    """How far a march has come: eigenvalues below `edge`, and the last slice's."""
+
+    found: int
+    edge: float
+    last: Float[Array, " modes"]
+
+
+def _next_slice(
+    pencil: Pencil, interval: _Interval, reached: _Reached, shift: Shift | None, most: int
+) -> tuple[EigenSlice, float]:
+    """Return the next slice, of so many modes at most, and where it ends."""
+    found, wanted = reached.found, interval.end
+    if shift is None:
+        shift = _next_shift(pencil, interval, reached, most)
+    left = shift.below - found
+    right = min(wanted - shift.below, max(BLOCK, _share(wanted - found, most) - left))
+    whole = shift.below + right == wanted
+    bounds = (reached.edge, interval.limit if whole else np.inf)
+    part, edge = _near(pencil.mass, shift, left, right, bounds), interval.limit
+    if not whole:
+        part, edge = _up_to_a_gap(part)
+        if _copies(part.eigenvalues) >= BLOCK:
+            part = _completed(pencil, shift, part, (reached.last[-1], edge), found)
+    _check(part, reached.last[-1], edge)
+    return part, edge
+
+
+def _share(remaining: int, most: int) -> int:
+    """Return how many of the remaining modes one shift is to find, so many at most."""
+    return -(-remaining // max(1, -(-remaining // most)))
 
 
 def _check(part: EigenSlice, before: float, edge: float) -> None:
@@ -233,9 +264,10 @@ def _beside(
     return EigenSlice(eigenvalues=np.zeros(0), shapes=np.zeros((mass.shape[0], 0)))
 
 
-def _next_shift(pencil: Pencil, interval: _Interval, found: int, last: Array, edge: float) -> Shift:
+def _next_shift(pencil: Pencil, interval: _Interval, reached: _Reached, most: int) -> Shift:
     """Place a shift in the middle of the modes that it is to find."""
-    ahead = 0.5 * _share(interval.end - found)
+    found, last, edge = reached.found, reached.last, reached.edge
+    ahead = 0.5 * _share(interval.end - found, most)
     start, end = np.sqrt(edge), np.sqrt(interval.limit)
     # Frequencies of a floor are about evenly spaced over a short way.
     omega = np.sqrt(np.maximum(last[-64:], 0.0))

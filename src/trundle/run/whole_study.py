@@ -59,7 +59,7 @@ def run_study(
     Returns
     -------
     StudyResult
-        RunLevels results; the same study gives the same bits, whoever computes it.
+        The results; the same study gives the same bits, whoever computes it.
     """
     tell = tell or silent
     give_back()

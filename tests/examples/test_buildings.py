@@ -81,7 +81,7 @@ def test_what_the_example_of_a_hospital_weighs():
     assert slabs + beams + 0.5 * upright < moving < slabs + beams + upright
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_van_on_the_ramp_is_felt_less_than_one_under_the_tool():
     """The ramp stands on the ground and on its own walls; the aisle hangs from the tool's columns."""
     rms = ran("car_park").to_xarray()["rms_velocity"].sel(point="tool").mean(dim="run").squeeze()

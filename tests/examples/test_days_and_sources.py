@@ -59,7 +59,7 @@ def table(file):
         return list(csv.DictReader(opened))
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_days_events_are_counts_times_shares():
     """For every criterion on both roads: the sum over routes of passages times runs that exceed."""
     result = trucks()
@@ -112,7 +112,7 @@ def test_a_day_is_in_report_tables_and_folder(tmp_path):
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == page
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_doses_of_a_day_are_estimated_by_their_rms():
     """eVDV is within a factor of two of VDV for passages (crests below 6), and 1.4 is its constant.
 

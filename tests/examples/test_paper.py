@@ -69,7 +69,7 @@ def test_the_reading_differs_by_entry_alone():
     }
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_the_reading_gives_decoupled_far_above_coupled_on_three_roads():
     """Published: peaks 4.6, 8.2 and 3.6 times as high for class B; rear 108.8 and 49.4 um/s."""
     study = load_study(FOLDER / "reading.toml")

@@ -36,7 +36,7 @@ def forklift():
     )
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_joints_govern_a_flat_floor(tmp_path):
     """Stepped joints are felt more than dowelled ones, those more than none; in every run.
 
@@ -61,7 +61,7 @@ def test_a_joint_lifts_a_forklift_by_what_its_tyre_sinks():
     assert gap.at(4.5 + 0.006)[0] == pytest.approx(-sinking * 0.010 / 0.1, rel=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_survey_is_driven_over_beside_its_class(tmp_path):
     """544 m of it from 478 m; its deck is felt as on the classes about it, in every run the same."""
     study = small("measured_profile", ('mesh_size = "1 m"', 'mesh_size = "2 m"'))

@@ -317,7 +317,7 @@ def study_on(tmp_path, floor, **changes):
     return path
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_study_on_a_model_is_the_study_on_the_plan(tmp_path):
     """The same floor by both ways: levels to the digits of the file, and a report of each."""
     (tmp_path / "plan.toml").write_text(GOOD)

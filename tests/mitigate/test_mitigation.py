@@ -248,7 +248,7 @@ def test_a_sweep_of_other_changes_takes_nothing_over(tmp_path):
             raise KeyboardInterrupt
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 @pytest.mark.filterwarnings("ignore")
 def test_workers_try_changes_to_the_same_bits(tmp_path):
     pytest.importorskip("distributed")

@@ -522,7 +522,7 @@ def test_an_event_beside_a_hum_is_found_wherever_it_is(at):
     assert 20 * np.log10(found / expected) == pytest.approx(0.0, abs=0.2)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 @pytest.mark.parametrize("seed", range(30))
 def test_events_anywhere_over_hum_noise_drift_and_offset(seed):
     """Seeded mixtures: the band of the event within 0.2 dB of an independent filter.

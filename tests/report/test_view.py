@@ -151,7 +151,7 @@ def test_a_browser_draws_it_offline(tmp_path, monkeypatch, capsys):
     assert "mode 2 of 24 shown" in dom
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_models_and_results_are_looked_at_too(tmp_path, monkeypatch, capsys):
     (tmp_path / "s.toml").write_text(GOOD)
     (tmp_path / "r").mkdir()

@@ -58,7 +58,7 @@ def sampled(layout):
     return parts, join([reduce_runs(part, averaging="event") for part in parts])
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_rms_and_bands_lie_inside_the_interval_of_2000_runs(exact, sampled):
     """Mean square of 2000 independent runs: 99 % interval by the central limit theorem."""
     parts, reduced = sampled
@@ -78,7 +78,7 @@ def inside(exact, squares, *, share=1.0):
     assert held.mean() >= share, (exact, squares.mean(axis=0), error)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_variance_at_each_time_and_of_the_contact_forces(exact, sampled):
     """2000 Gaussian values: a standard deviation scatters by 1.6 %, 5 % at 99.9 % in time."""
     parts, _ = sampled
@@ -87,7 +87,7 @@ def test_variance_at_each_time_and_of_the_contact_forces(exact, sampled):
         assert np.abs(std - exact.std(name)).max() < 0.08 * std.max()
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_peaks_are_those_of_runs(exact, sampled):
     """1000 draws and 2000 runs scatter apart by 2.5 % at 95 %: three times that, at every factor."""
     _, reduced = sampled

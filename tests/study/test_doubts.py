@@ -199,7 +199,7 @@ def test_a_mesh_too_coarse_for_the_highest_band_is_doubted(doubts):
     assert "mesh" not in doubts(coarse)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_half_the_mesh_changes_what_the_doubt_says_it_changes(tmp_path):
     """Another mesh: bands of the floor that 0.75 m carries agree; those above are off by more.
 

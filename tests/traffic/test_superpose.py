@@ -212,7 +212,7 @@ def test_what_adding_up_leaves_out_is_told(floor):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_day_that_is_run_lies_where_it_is_expected(floor):
     """150 passages far apart, beside what 200 other roads let expect: within 99.9 % of chance.
 

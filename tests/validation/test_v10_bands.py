@@ -169,7 +169,7 @@ def test_beam_whose_modes_all_vibrate(record, f_max):
     compare(record, runs, beam_velocity(runs.time), tolerance=asked_for, name=name)
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_plate(record):
     """Modes below 112 Hz in both, the rest by their statics; 40 x 20 in the closed form."""
     length, width, thickness = 20.0, 10.0, 0.30

@@ -175,7 +175,7 @@ def test_small_plan_by_default(record, kind, vehicle):
     )  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_fine_step_leaves_nothing(record):
     """At 0.5 ms and with the same modes the two methods are one, to 0.1 % in every band."""
     case = small(container_truck_40ft())

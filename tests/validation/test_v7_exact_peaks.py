@@ -48,7 +48,7 @@ FLOORS = {  # changes to the small plan, speed [km/h], y of the road [m], point
 }
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 @pytest.mark.parametrize("name", list(FLOORS))
 def test_exact_peaks_are_those_of_runs(record, name):
     changes, kmh, y, point = FLOORS[name]

@@ -328,7 +328,7 @@ def test_a_hinged_brace_is_a_bar():
 # --- columns under flat slabs
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_flat_slab_settles_as_its_mesh_is_refined():
     """Frequencies and the static answer at a tool: below 5 % to half the size, 2 % to a quarter."""
     house = Building(

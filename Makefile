@@ -72,6 +72,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/estimate.py
 	$(BIN)/python benchmarks/building.py
 	$(BIN)/python benchmarks/day.py
+	$(BIN)/python benchmarks/parts.py
 
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs

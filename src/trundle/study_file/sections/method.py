@@ -294,7 +294,8 @@ def _entries(draft: Draft) -> Iterator[Problem]:
 
 def _vehicle_steps(draft: Draft) -> Iterator[Problem]:
     """Give the vehicles whose own vibration is too fast for a method's steps."""
-    vehicles = {drive.vehicle.name: drive.vehicle for drive in draft.drives.values()}
+    # two of one kind bear one name
+    vehicles = {id(drive.vehicle): drive.vehicle for drive in draft.drives.values()}
     for method in draft.methods.values():
         place = draft.file.place_of(method.name, "method")
         integration = method.interaction.integration

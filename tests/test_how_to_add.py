@@ -400,7 +400,7 @@ print(json.dumps([first, study.extent, told]))
     assert "give length, width and thickness" in told
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_quantity_is_one_row(house, tmp_path):
     """In arrays, table, report and map; the square of the RMS that stands beside it."""
     (tmp_path / "study.toml").write_text(GOOD + MAP)

@@ -79,7 +79,7 @@ def test_a_mesh_of_two_metres_does_not_carry_the_reference_unit_beyond_six_hertz
     assert resolved_frequency(reference_plan(), 0.5) > 63.0
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_modes_below_what_a_mesh_carries_agree_with_half_the_mesh_and_those_above_do_not():
     """Mesh 2 m against 1 m on four bays: within 11 % below the frequency, beyond it above."""
     plan = FloorPlan(

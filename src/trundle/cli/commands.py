@@ -17,6 +17,7 @@ from trundle.cli.sketch import plan_sketch
 from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
 from trundle.errors import InputError
 from trundle.run.estimate import estimate_of
+from trundle.run.parts import with_kept_parts
 from trundle.study.assumptions import early_end_warnings
 from trundle.study.doubts import study_doubts
 from trundle.study.model import Study
@@ -100,7 +101,7 @@ def new(path: Path) -> None:
 def modes(path: Path, f_max: str, *, as_json: bool = False) -> None:
     """Print the natural frequencies of a study's floor."""
     limit = _frequency(f_max)
-    floor = load_study(path).floor
+    floor = with_kept_parts(load_study(path).floor)
     with progress_bar() as tell:
         found = floor.modes(limit, progress=lambda share: tell(f"modes below {limit:g} Hz", share))
     inertia = floor.inertia_of(2)

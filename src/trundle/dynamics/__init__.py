@@ -1,9 +1,19 @@
 """Reduce vibrating things to matrices and step them through time."""
 
 from trundle.dynamics.damping import ByMaterial, Damping, ModalRatio, Rayleigh
-from trundle.dynamics.eigen import count_modes_below, modes_by_shifts, natural_modes
+from trundle.dynamics.eigen import (
+    count_modes_below,
+    dense_is_better,
+    intervals_below,
+    modes_by_shifts,
+    modes_within,
+    natural_modes,
+    together,
+)
 from trundle.dynamics.exact import ExactRecursion, ModalRecursion
 from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
+from trundle.dynamics.kept_parts import is_reduction_of, part_as_arrays, part_from_arrays
+from trundle.dynamics.lanczos import Interval
 from trundle.dynamics.modes import Basis, Modes
 from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
 from trundle.dynamics.pencil import Pencil, Product, SparsePencil, shift_near
@@ -19,7 +29,7 @@ from trundle.dynamics.sampling import (
 )
 from trundle.dynamics.sparse_solver import Factor, HalfSolve, available_backends, factorise
 from trundle.dynamics.stepping import Motion, Propagator, State
-from trundle.dynamics.superelement import Superelement, reduce_part
+from trundle.dynamics.superelement import RestingPart, Superelement, reduce_part
 from trundle.dynamics.system import LinearSystem, block_diagonal
 
 __all__ = [
@@ -32,6 +42,7 @@ __all__ = [
     "Factor",
     "HalfSolve",
     "HalfStep",
+    "Interval",
     "LinearSystem",
     "ModalRatio",
     "ModalRecursion",
@@ -43,6 +54,7 @@ __all__ = [
     "Product",
     "Propagator",
     "Rayleigh",
+    "RestingPart",
     "SparsePencil",
     "State",
     "Superelement",
@@ -50,17 +62,24 @@ __all__ = [
     "available_backends",
     "block_diagonal",
     "count_modes_below",
+    "dense_is_better",
     "differentiator",
     "factorise",
     "following_filters",
     "image_filters",
+    "intervals_below",
+    "is_reduction_of",
     "modes_as_arrays",
     "modes_by_shifts",
     "modes_from_arrays",
+    "modes_within",
     "natural_modes",
+    "part_as_arrays",
+    "part_from_arrays",
     "reduce_part",
     "repeatable",
     "responses_of",
     "restoring_filter",
     "shift_near",
+    "together",
 ]

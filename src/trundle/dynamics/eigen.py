@@ -5,6 +5,9 @@ Large sparse systems are taken slice by slice (`dynamics.lanczos`), small ones w
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 from scipy import linalg, sparse
 from threadpoolctl import threadpool_limits
@@ -12,17 +15,26 @@ from threadpoolctl import threadpool_limits
 from trundle._checks import positive
 from trundle._progress import Progress
 from trundle._typing import Array, Matrix, SparseMatrix
-from trundle.dynamics.lanczos import EigenSlice, march
+from trundle.dynamics.lanczos import EigenSlice, Interval, march, march_within
 from trundle.dynamics.modes import Modes
 from trundle.dynamics.pencil import Pencil, Product, SparsePencil, shift_near
 from trundle.dynamics.sparse_solver import factorise
 from trundle.errors import UnrestrainedModeError
 
-__all__ = ["count_modes_below", "modes_by_shifts", "natural_modes"]
+__all__ = [
+    "count_modes_below",
+    "dense_is_better",
+    "intervals_below",
+    "modes_by_shifts",
+    "modes_within",
+    "natural_modes",
+    "together",
+]
 
 _DENSE_LIMIT = 600
 _DENSE_FALLBACK = 6000
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any floor mode
+_OF_PARTS = 160  # modes looked for at one shift of a structure by its parts: its factors are cheap
 _RIGID = 1e-4  # rad2/s2: an eigenvalue below this is a motion without strain
 
 
@@ -85,12 +97,7 @@ def natural_modes(
             f"{np.count_nonzero(eigenvalues < _RIGID)} motions without strain: part of the "
             "structure is loose or unsupported; add supports, or connect the loose part"
         )
-    return Modes(
-        omega=np.sqrt(np.maximum(eigenvalues, 0.0)),
-        shapes=shapes,
-        residuals=residuals,
-        f_max=float(f_max),
-    )
+    return _as_modes(eigenvalues, shapes, residuals, f_max)
 
 
 def _dense(mass: Matrix, stiffness: Matrix, f_max: float) -> tuple[Array, Array]:
@@ -145,15 +152,117 @@ def modes_by_shifts(pencil: Pencil, *, f_max: float, progress: Progress | None =
     ConvergenceError
         The count found differs from the count by inertia.
     """
-    end = shift_near(pencil, 2.0 * np.pi * positive("f_max", f_max))
-    wanted, limit = end.below, end.value
-    del end
     n = int(pencil.mass.shape[0])
-    if n <= _DENSE_LIMIT or (wanted > n // 6 and n <= _DENSE_FALLBACK):
+    if dense_is_better(n, _count(pencil, f_max)):
         mass, stiffness = (np.asarray(one @ np.eye(n)) for one in (pencil.mass, pencil.stiffness))
-        eigenvalues, shapes, residuals = _whole(mass, stiffness, f_max)
-    else:
-        eigenvalues, shapes, residuals = _by_shifts(pencil, wanted, limit, progress)
+        return _as_modes(*_whole(mass, stiffness, f_max), f_max)
+    parts = intervals_below(pencil, f_max)
+    done = np.zeros(len(parts))
+
+    def search(number: int) -> Modes:
+        """Find the modes of one part."""
+
+        def tell(share: float) -> None:
+            """Tell of all parts."""
+            done[number] = share
+            if progress is not None:
+                progress(0.98 * float(done.mean()))
+
+        return modes_within(pencil, parts[number], progress=tell)
+
+    with ThreadPoolExecutor(2) as pool:
+        return together(list(pool.map(search, range(len(parts)))), n_coordinates=n, f_max=f_max)
+
+
+def dense_is_better(n: int, wanted: int) -> bool:
+    """Return whether so many modes of a matrix of n rows are found sooner by dense algebra."""
+    return n <= _DENSE_LIMIT or (n <= _DENSE_FALLBACK and wanted > n // 6)
+
+
+def _count(pencil: Pencil, f: float) -> int:
+    """Return how many modes lie below a frequency [Hz]."""
+    return shift_near(pencil, 2.0 * np.pi * positive("f_max", f)).below
+
+
+def intervals_below(pencil: Pencil, f_max: float, *, most: int = 900) -> tuple[Interval, ...]:
+    """Part the spectrum below a frequency, so that each part can be searched by itself, anywhere.
+
+    Parameters
+    ----------
+    pencil : Pencil
+        Stiffness and mass, which can be factorised at any shift.
+    f_max : float
+        End of the last part [Hz].
+    most : int
+        How many modes a part is to hold, about: plates have as many in every band of one width,
+        storeys on each other more and more.
+
+    Notes
+    -----
+    Every edge is factorised once and its inertia counted; the parts depend on nothing else, so
+    that modes have the same bits however many search them.
+    """
+    positive("f_max", f_max)
+    end = shift_near(pencil, 2.0 * np.pi * f_max)
+    n = max(1, -(-end.below // most))
+    found: list[Interval] = []
+    first, edge = 0, 0.0
+    for share in np.sqrt(np.arange(1, n) / n):
+        cut = shift_near(pencil, 2.0 * np.pi * f_max * float(share))
+        found.append(Interval(first=first, edge=edge, end=cut.below, limit=cut.value))
+        first, edge = cut.below, cut.value
+    return (*found, Interval(first=first, edge=edge, end=end.below, limit=end.value))
+
+
+def modes_within(pencil: Pencil, interval: Interval, *, progress: Progress | None = None) -> Modes:
+    """Find all modes of one part of a spectrum.
+
+    Parameters
+    ----------
+    pencil : Pencil
+        Stiffness and mass, which can be factorised at any shift; shapes are by its coordinates.
+    interval : Interval
+        The part.
+    progress : callable, optional
+        Told about how much of the work is done, 0 to 1.
+
+    Raises
+    ------
+    ConvergenceError
+        The count found differs from the count by inertia.
+    """
+    found: list[Modes] = []
+    count = interval.end - interval.first
+    f_max = float(np.sqrt(interval.limit)) / (2.0 * np.pi)
+
+    def keep(below: int, part: EigenSlice) -> None:
+        """Keep a slice."""
+        # a march that goes back replaces what it found
+        while found and sum(one.n_modes for one in found) > below - interval.first:
+            found.pop()
+        residuals = _residuals(pencil.mass, pencil.stiffness, part.eigenvalues, part.shapes)
+        signed = part.shapes * _signs(part.shapes)
+        found.append(_as_modes(part.eigenvalues, signed, residuals, f_max))
+        if progress is not None:
+            progress(min(1.0, sum(one.n_modes for one in found) / count))
+
+    if count:
+        with threadpool_limits(limits=1):
+            march_within(pencil, interval, keep=keep, most=_OF_PARTS)
+    return together(found, n_coordinates=int(pencil.mass.shape[0]), f_max=f_max)
+
+
+def together(parts: Sequence[Modes], *, n_coordinates: int, f_max: float) -> Modes:
+    """Return modes of parts of a spectrum that follow each other, as one."""
+    return Modes(
+        omega=np.concatenate([np.zeros(0), *(part.omega for part in parts)]),
+        shapes=np.hstack([np.zeros((n_coordinates, 0)), *(part.shapes for part in parts)]),
+        residuals=np.concatenate([np.zeros(0), *(part.residuals for part in parts)]),
+        f_max=float(f_max),
+    )
+
+
+def _as_modes(eigenvalues: Array, shapes: Array, residuals: Array, f_max: float) -> Modes:
     return Modes(
         omega=np.sqrt(np.maximum(eigenvalues, 0.0)),
         shapes=shapes,

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from trundle._typing import Array, SparseMatrix
-from trundle.dynamics.eigen import count_modes_below
+from trundle._typing import Array
 from trundle.dynamics.modes import Modes
+from trundle.dynamics.pencil import Pencil, shift_near
 
 __all__ = ["are_modes_of", "modes_as_arrays", "modes_from_arrays"]
 
@@ -47,7 +47,7 @@ def modes_from_arrays(arrays: Mapping[str, Array]) -> Modes:
     return modes
 
 
-def are_modes_of(modes: Modes, mass: SparseMatrix, stiffness: SparseMatrix) -> bool:
+def are_modes_of(modes: Modes, pencil: Pencil) -> bool:
     """Return whether modes are all those of a system below their limit.
 
     Notes
@@ -56,7 +56,7 @@ def are_modes_of(modes: Modes, mass: SparseMatrix, stiffness: SparseMatrix) -> b
     of modes; one spoiled number anywhere breaks either, and each costs a product with the shapes.
     Modes may be right, and one of them missing: inertia counts them.
     """
-    n = modes.n_modes
+    n, mass, stiffness = modes.n_modes, pencil.mass, pencil.stiffness
     if modes.shapes.shape != (mass.shape[0], n) or modes.residuals.shape != (n,) or n == 0:
         return False
     sound = all(np.isfinite(v).all() for v in (modes.shapes, modes.omega, modes.residuals))
@@ -71,7 +71,7 @@ def are_modes_of(modes: Modes, mass: SparseMatrix, stiffness: SparseMatrix) -> b
     unlike = np.abs(np.sum(both * moved, axis=0) / n - 1.0)
     if not (np.all(off < _OFF) and np.all(unlike < _OFF)):
         return False
-    return count_modes_below(mass, stiffness, modes.f_max) == n
+    return shift_near(pencil, 2.0 * np.pi * modes.f_max).below == n
 
 
 def _digest(modes: Modes) -> bytes:

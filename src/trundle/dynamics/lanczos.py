@@ -25,38 +25,20 @@ import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array
-from trundle.dynamics.krylov import BLOCK, Krylov
-from trundle.dynamics.pencil import Pencil, Product, Shift, shift_near
+from trundle.dynamics.krylov import BLOCK
+from trundle.dynamics.near_shift import EigenSlice, hunted, near
+from trundle.dynamics.pencil import Pencil, Shift, shift_near
 from trundle.errors import ConvergenceError
 
-__all__ = ["EigenSlice", "march"]
+__all__ = ["EigenSlice", "Interval", "march", "march_within"]
 
 _SLICE = 320  # modes looked for at one shift
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any floor mode
-_USUAL_SUBSPACE = 2.3  # columns a mode takes to converge; looking earlier costs time
-_ACCURATE = 1e-11  # relative error of an inverse eigenvalue that counts as converged
 _SHORTEST = 80  # modes of a slice below which a march is given up
 _EDGES = 16  # last modes of a slice among which the widest gap is its end
 _MIDDLE = 0.62  # of the highest frequency: as many modes above as below, with what each costs
 _EQUAL = 1e-5  # relative distance of eigenvalues that may be copies of one
-_ANEW = 60  # searches beside what is found, each of which shows another block of copies
 _LARGEST = 2400  # modes that one shift may be left with where no shift parts them
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EigenSlice:
-    """Hold the eigenpairs of one part of a spectrum.
-
-    Attributes
-    ----------
-    eigenvalues : ndarray of float, shape (n_found,)
-        Rising [rad2/s2].
-    shapes : ndarray of float, shape (n_dofs, n_found)
-        Eigenvectors, M-orthonormal.
-    """
-
-    eigenvalues: Float[Array, " modes"]
-    shapes: Float[Array, "dofs modes"]
 
 
 def march(
@@ -85,24 +67,38 @@ def march(
     ConvergenceError
         A slice holds more or fewer eigenvalues than inertia counts.
     """
-    lowest = Shift(value=-_SHIFT, factor=pencil.factorise(-_SHIFT))
+    lowest = _lowest(pencil)
     if wanted <= 2 * _SLICE:
-        _march(pencil, _Interval(first=0, edge=0.0, end=wanted, limit=limit), lowest, keep)
+        whole = Interval(first=0, edge=0.0, end=wanted, limit=limit)
+        march_within(pencil, whole, shift=lowest, keep=keep)
         return
     # Floors have about twice as many modes in an octave as in the one below; this halves the work.
     middle = shift_near(pencil, _MIDDLE * np.sqrt(limit))
-    lower = _Interval(first=0, edge=0.0, end=middle.below, limit=middle.value)
-    upper = _Interval(first=middle.below, edge=middle.value, end=wanted, limit=limit)
+    lower = Interval(first=0, edge=0.0, end=middle.below, limit=middle.value)
+    upper = Interval(first=middle.below, edge=middle.value, end=wanted, limit=limit)
     del middle
     with ThreadPoolExecutor(2) as pool:
-        above = pool.submit(_march, pencil, upper, None, keep)
-        _march(pencil, lower, lowest, keep)
+        above = pool.submit(march_within, pencil, upper, keep=keep)
+        march_within(pencil, lower, shift=lowest, keep=keep)
         above.result()
 
 
+def _lowest(pencil: Pencil) -> Shift:
+    """Factorise just below all eigenvalues."""
+    return Shift(value=-_SHIFT, factor=pencil.factorise(-_SHIFT))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Interval:
-    """A part of a spectrum: from `edge`, with `first` eigenvalues below, to `limit`, with `end`."""
+class Interval:
+    """Hold a part of a spectrum, whose eigenvalues inertia has counted.
+
+    Attributes
+    ----------
+    first, end : int
+        How many eigenvalues lie below it, and below its end.
+    edge, limit : float
+        Where it begins and ends [rad2/s2]; neither is an eigenvalue.
+    """
 
     first: int
     edge: float
@@ -110,14 +106,38 @@ class _Interval:
     limit: float
 
 
-def _march(
+def march_within(
     pencil: Pencil,
-    interval: _Interval,
-    shift: Shift | None,
+    interval: Interval,
+    *,
     keep: Callable[[int, EigenSlice], None],
+    shift: Shift | None = None,
+    most: int = _SLICE,
 ) -> None:
+    """Find the eigenpairs of one part of a spectrum, a slice at a time.
+
+    Parameters
+    ----------
+    pencil : Pencil
+        Symmetric M [kg] and K [N/m].
+    interval : Interval
+        The part of the spectrum.
+    keep : callable
+        Given the number of eigenvalues below the next slice, and the slice.
+    shift : Shift, optional
+        Where the first slice is looked for, if that is known.
+    most : int
+        How many one shift is to find; fewer where factors are cheap against products.
+
+    Raises
+    ------
+    ConvergenceError
+        A slice holds more or fewer eigenvalues than inertia counts.
+    """
+    if shift is None and interval.first == 0:
+        shift = _lowest(pencil)
     start = _Reached(found=interval.first, edge=interval.edge, last=np.array([interval.edge]))
-    reached, most = [start], _SLICE
+    reached = [start]
     while reached[-1].found < interval.end:
         try:
             part, edge = _next_slice(pencil, interval, reached[-1], shift, most)
@@ -148,7 +168,7 @@ class _Reached:
 
 
 def _next_slice(
-    pencil: Pencil, interval: _Interval, reached: _Reached, shift: Shift | None, most: int
+    pencil: Pencil, interval: Interval, reached: _Reached, shift: Shift | None, most: int
 ) -> tuple[EigenSlice, float]:
     """Return the next slice, of so many modes at most, and where it ends."""
     found, wanted = reached.found, interval.end
@@ -158,7 +178,7 @@ def _next_slice(
     right = min(wanted - shift.below, max(BLOCK, _share(wanted - found, most) - left))
     whole = shift.below + right == wanted
     bounds = (reached.edge, interval.limit if whole else np.inf)
-    part, edge = _near(pencil.mass, shift, left, right, bounds), interval.limit
+    part, edge = near(pencil.mass, shift, left, right, bounds), interval.limit
     if not whole:
         part, edge = _up_to_a_gap(part)
         if _copies(part.eigenvalues) >= BLOCK:
@@ -208,63 +228,10 @@ def _completed(
 ) -> EigenSlice:
     """Return a slice with all copies that inertia counts up to its end."""
     wanted = shift_near(pencil, float(np.sqrt(bounds[1]))).below - found
-    return _hunted(pencil.mass, shift, part, bounds, wanted)
+    return hunted(pencil.mass, shift, part, bounds, wanted)
 
 
-def _hunted(
-    mass: Product, shift: Shift, part: EigenSlice, bounds: tuple[float, float], wanted: int
-) -> EigenSlice:
-    """Search anew beside what is found until so many eigenpairs lie within bounds.
-
-    Raises
-    ------
-    ConvergenceError
-        No further one appears, or more were found than inertia counts.
-    """
-    values, shapes = part.eigenvalues, part.shapes
-    for start in range(1, _ANEW):
-        missing = wanted - len(values)
-        if missing <= 0:
-            break
-        more = _beside(mass, shift, shapes, bounds, missing=missing, start=start)
-        values = np.concatenate([values, more.eigenvalues])
-        shapes = np.hstack([shapes, more.shapes])
-    if len(values) != wanted:
-        raise ConvergenceError(
-            f"between {np.sqrt(max(bounds[0], 0.0)) / (2.0 * np.pi):.6g} Hz and the next gap "
-            f"inertia counts {wanted} modes, and {len(values)} were found",
-            residual=float("nan"),
-        )
-    order = np.argsort(values)
-    return EigenSlice(eigenvalues=values[order], shapes=shapes[:, order])
-
-
-def _beside(
-    mass: Product,
-    shift: Shift,
-    shapes: Array,
-    bounds: tuple[float, float],
-    *,
-    missing: int,
-    start: int,
-) -> EigenSlice:
-    """Return some of the missing eigenpairs, found M-orthogonal to others."""
-    capacity = min(mass.shape[0] - 1, 5 * missing + 40 * BLOCK)
-    krylov = Krylov(mass, shift.factor, capacity, beside=shapes, start=start)
-    while krylov.extend():
-        if krylov.size % (4 * BLOCK):
-            continue
-        nu, ritz, errors = krylov.ritz_pairs()
-        values = shift.value + 1.0 / nu
-        within = (values >= bounds[0]) & (values < bounds[1])
-        good = within & (errors <= _ACCURATE * np.abs(nu))
-        if good.any() and (good.sum() >= min(missing, BLOCK) or (within == good).all()):
-            pick = np.flatnonzero(good)[:missing]
-            return EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
-    return EigenSlice(eigenvalues=np.zeros(0), shapes=np.zeros((mass.shape[0], 0)))
-
-
-def _next_shift(pencil: Pencil, interval: _Interval, reached: _Reached, most: int) -> Shift:
+def _next_shift(pencil: Pencil, interval: Interval, reached: _Reached, most: int) -> Shift:
     """Place a shift in the middle of the modes that it is to find."""
     found, last, edge = reached.found, reached.last, reached.edge
     ahead = 0.5 * _share(interval.end - found, most)
@@ -286,46 +253,5 @@ def _next_shift(pencil: Pencil, interval: _Interval, reached: _Reached, most: in
         return shift  # so many equal modes: one slice takes them all
     raise ConvergenceError(
         f"no shift above {start / (2.0 * np.pi):.6g} Hz parts the modes that lie close together",
-        residual=float("nan"),
-    )
-
-
-def _near(
-    mass: Product, shift: Shift, left: int, right: int, bounds: tuple[float, float]
-) -> EigenSlice:
-    """Return so many eigenpairs on the left of a shift and on its right, all within bounds."""
-    wanted = left + right
-    capacity = min(mass.shape[0] - 1, 5 * wanted + 32 * BLOCK)
-    krylov = Krylov(mass, shift.factor, capacity)
-    next_look = int(_USUAL_SUBSPACE * wanted) + 6 * BLOCK
-    while krylov.extend():
-        if krylov.size >= next_look:
-            nu, ritz, errors = krylov.ritz_pairs()
-            good = errors <= _ACCURATE * np.abs(nu)
-            # nearest the shift are the largest on either side: first and last of the list
-            if good[:left].all() and good[len(nu) - right :].all():
-                pick = np.r_[:left, len(nu) - right : len(nu)]
-                eigenvalues = shift.value + 1.0 / nu[pick]
-                inside = (eigenvalues >= bounds[0]) & (eigenvalues < bounds[1])
-                pick, eigenvalues = pick[inside], eigenvalues[inside]
-                order = np.argsort(eigenvalues)
-                shapes = krylov.vectors(ritz[:, pick[order]])
-                part = EigenSlice(eigenvalues=eigenvalues[order], shapes=shapes)
-                # what lies beyond the bounds converged in the place of copies that do not appear
-                return part if inside.all() else _hunted(mass, shift, part, bounds, wanted)
-            next_look = int(1.08 * krylov.size)
-    # Where copies are missing, others in their place may be too far to converge.
-    whole = bool(np.isfinite(bounds[1]))
-    if whole or left:
-        bounds = bounds if whole else (bounds[0], shift.value)
-        nu, ritz, errors = krylov.ritz_pairs()
-        values = shift.value + 1.0 / nu
-        found = (values >= bounds[0]) & (values < bounds[1]) & (errors <= _ACCURATE * np.abs(nu))
-        pick = np.flatnonzero(found)
-        part = EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
-        return _hunted(mass, shift, part, bounds, wanted if whole else left)
-    raise ConvergenceError(
-        f"{wanted} modes wanted near {np.sqrt(max(shift.value, 0.0)) / (2.0 * np.pi):.6g} Hz by "
-        f"inertia, but the iteration stopped short with a subspace of {krylov.size}",
         residual=float("nan"),
     )

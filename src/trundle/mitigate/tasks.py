@@ -39,6 +39,11 @@ class ChangesTask:
         """Name of what it leaves."""
         return f"{self.job.name}-runs{self.number:04d}"
 
+    @property
+    def alone(self) -> bool:
+        """Whether none may be computed beside it: a sparse solver answers one at a time."""
+        return not self.job.modal
+
     def seconds(self, size: Size) -> float:
         """Return about how long it takes."""
         return runs_seconds(self.job, self.job.parts[self.number], size)

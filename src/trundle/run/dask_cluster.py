@@ -17,11 +17,11 @@ from trundle import __version__
 from trundle._progress import Progress
 from trundle.dynamics import repeatable
 from trundle.errors import ComputationError, InputError
-from trundle.results.parts import Part
-from trundle.run.executor import Shared
-from trundle.run.jobs import PreparedJob, prepare_job
+from trundle.run.executor import Shared, Work
+from trundle.run.jobs import prepare_job
 from trundle.run.tasks import Task
 from trundle.simulate import PreparedFloor, prepare
+from trundle.structure import Structure
 
 __all__ = ["Cluster", "cluster_at", "local_cluster"]
 
@@ -39,7 +39,7 @@ class Cluster:
         self._sent: dict[int, tuple[Shared, Any]] = {}
         self._pending: dict[Any, _Sent] = {}
 
-    def submit(self, task: Task, shared: Shared, progress: Progress) -> None:
+    def submit(self, task: Work, shared: Shared, progress: Progress) -> None:
         """Send a task; what it shares travels once to each worker, and progress stays there."""
         del progress
         self._send(_Sent(task=task, shared=shared, tries=1))
@@ -59,7 +59,7 @@ class Cluster:
         )
         self._pending[future] = what
 
-    def finished(self, *, wait: bool) -> Iterator[tuple[str, Part]]:
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Any]]:
         """Give finished pieces: those there already, or all, as they come."""
         distributed = _distributed()
         while self._pending:
@@ -87,7 +87,7 @@ class Cluster:
                 "command goes on from there"
             )
 
-    def _piece(self, future: Any, what: _Sent) -> Part | None:  # noqa: ANN401
+    def _piece(self, future: Any, what: _Sent) -> Any:  # noqa: ANN401
         """Return a task's piece; if what it needs died with a worker, send the task again."""
         distributed = _distributed()
         name = what.task.name
@@ -117,7 +117,7 @@ class Cluster:
 class _Sent:
     """A task that workers were asked for."""
 
-    task: Task
+    task: Work
     shared: Shared
     tries: int
 
@@ -125,7 +125,7 @@ class _Sent:
 _kept: dict[tuple[str, str], PreparedFloor] = {}  # of this worker: the last floor it prepared
 
 
-def _compute(task: Task, shared: Shared, source: str) -> Part:
+def _compute(task: Work, shared: Shared, source: str) -> Any:  # noqa: ANN401
     """Compute a task, in a worker; one that joined late may have another source."""
     if source != source_hash():
         raise ComputationError(
@@ -133,8 +133,9 @@ def _compute(task: Task, shared: Shared, source: str) -> Part:
             "was finished is kept: install the same one there, and run it again"
         )
     with repeatable():
-        if isinstance(shared, PreparedJob):
+        if not isinstance(shared, Structure):
             return task.compute(shared)
+        assert isinstance(task, Task)  # only jobs are given a floor as it is
         interaction = task.job.method.interaction
         key = (shared.content_hash, str(interaction))
         if key not in _kept:

@@ -4,21 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias, runtime_checkable
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 from trundle._progress import Progress
 from trundle.dynamics import repeatable
-from trundle.results.parts import Part
 from trundle.run.checkpoint import PieceStore
 from trundle.run.jobs import Job, PreparedJob
 from trundle.run.progress import Bar
 from trundle.run.tasks import Task
 from trundle.structure import Structure
+from trundle.structure.superelements import Part, ReducedPencil
 
-__all__ = ["Batch", "Executor", "Shared", "carry_out"]
+__all__ = ["Batch", "Executor", "Shared", "Work", "carry_out"]
 
-Shared: TypeAlias = PreparedJob | Structure
-"""What the tasks of a job share: its layout, or the floor that a worker lays it out on itself."""
+Shared: TypeAlias = PreparedJob | Structure | Part | ReducedPencil
+"""What tasks are given: of a job its layout, or the floor that a worker lays it out on itself; what
+is reduced; matrices of which modes are wanted."""
+
+
+@runtime_checkable
+class Work(Protocol):
+    """What an executor computes: a part of a job, a reduction, a part of a spectrum."""
+
+    @property
+    def name(self) -> str:
+        """Name of what it leaves, unique among what is computed beside it."""
+        ...
+
+    @property
+    def alone(self) -> bool:
+        """Whether no other may be computed beside it in one process."""
+        ...
+
+    def compute(self, shared: Any, /, progress: Progress | None = None) -> Any:  # noqa: ANN401
+        """Compute it: the same bits wherever and whenever."""
+        ...
 
 
 @runtime_checkable
@@ -30,11 +50,11 @@ class Executor(Protocol):
         """Whether this process computes: it then needs the layout itself."""
         ...
 
-    def submit(self, task: Task, shared: Shared, progress: Progress) -> None:
+    def submit(self, task: Work, shared: Shared, progress: Progress) -> None:
         """Take a task; wait as long as there is no room for it."""
         ...
 
-    def finished(self, *, wait: bool) -> Iterator[tuple[str, Part]]:
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Any]]:
         """Give the names of finished tasks with what they leave: those at hand, or all."""
         ...
 

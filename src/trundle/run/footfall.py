@@ -15,6 +15,7 @@ from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 from trundle.footfall import footfall_load
 from trundle.run.mode_cache import modes_of
+from trundle.run.parts import with_kept_parts
 from trundle.simulate import FootfallResponse, footfall_floor, footfall_response, prepare
 from trundle.simulate import footfall_rule as rule_of
 from trundle.study.map_plan import MapGrid, grids_over
@@ -127,8 +128,9 @@ def study_footfall(study: Study, asked: FootfallAsked, *, tell: Tell = silent) -
     integration, damping = method.interaction.integration, method.interaction.damping
     f_max = integration.f_max
     assert f_max is not None  # the method has modes
-    modes = modes_of(study.floor, f_max=f_max, progress=_part(tell, "modes", 0.0, 0.4))
-    prepared = prepare(study.floor, integration, damping, modes=modes)
+    structure = with_kept_parts(study.floor)
+    modes = modes_of(structure, f_max=f_max, progress=_part(tell, "modes", 0.0, 0.4))
+    prepared = prepare(structure, integration, damping, modes=modes)
     spots = [grid.spots for grid in grids if len(grid.spots)]
     statics = _part(tell, "static deflections", 0.4, 0.6)
     statics(0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -13,34 +14,33 @@ import numpy as np
 from trundle._progress import Progress
 from trundle.dynamics import (
     Modes,
+    SparsePencil,
     are_modes_of,
     available_backends,
     modes_as_arrays,
     modes_from_arrays,
 )
 from trundle.results.kept import stored_as_they_are
+from trundle.run.cache import cache_folder, make_room
+from trundle.run.executor import Executor
+from trundle.run.parts import modes_by_parts
 from trundle.structure import Structure
+from trundle.structure.superelements import PartedStructure
 
-__all__ = ["cache_folder", "has_modes", "modes_of"]
+__all__ = ["has_modes", "modes_of"]
 
 
 _KEPT = 8  # sets of modes; the one unused for longest goes first
+_ROOM = 6e9  # bytes of them
 
 
-def cache_folder() -> Path | None:
-    """Return where modes are kept, or None where keeping is switched off.
-
-    ``TRUNDLE_CACHE`` names the folder; set to nothing it switches keeping off. Without it modes
-    stand in the user's cache.
-    """
-    named = os.environ.get("TRUNDLE_CACHE")
-    if named is not None:
-        return Path(named) if named else None
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    return base / "trundle" / "modes"
-
-
-def modes_of(floor: Structure, *, f_max: float, progress: Progress | None = None) -> Modes:
+def modes_of(
+    floor: Structure,
+    *,
+    f_max: float,
+    progress: Progress | None = None,
+    executor: Executor | None = None,
+) -> Modes:
     """Return the modes of a floor below a frequency, from the cache if it has them.
 
     Parameters
@@ -51,13 +51,22 @@ def modes_of(floor: Structure, *, f_max: float, progress: Progress | None = None
         Upper frequency [Hz].
     progress : callable, optional
         Told the share of modes found, where they must be found.
+    executor : Executor, optional
+        Who finds those of a structure that is cut into parts; threads of this process unless
+        given.
     """
+    parted = isinstance(floor, PartedStructure)
+    if parted:
+        floor.check_reach(f_max)
     file = _file(floor, f_max) if floor.has_matrices else None
     kept = None if file is None else _read(file, floor)
     if kept is not None and kept.f_max == f_max:
         return kept
-    modes = floor.modes(f_max, progress=progress)
-    if file is not None and modes.basis is None:  # by parts they are found again as fast
+    if parted:
+        modes = modes_by_parts(floor, f_max, executor=executor, progress=progress)
+    else:
+        modes = floor.modes(f_max, progress=progress)
+    if file is not None:
         _write(file, modes)
     return modes
 
@@ -89,7 +98,12 @@ def _read(file: Path, floor: Structure) -> Modes | None:
         os.utime(file)
     except Exception:  # readers raise whatever damage leads them to
         return None
-    return modes if are_modes_of(modes, *floor.matrices()) else None
+    if not isinstance(floor, PartedStructure):
+        mass, stiffness = floor.matrices()
+        pencil = SparsePencil(mass=mass, stiffness=stiffness)
+        return modes if are_modes_of(modes, pencil) else None
+    joined = floor.joined
+    return replace(modes, basis=joined) if are_modes_of(modes, joined.pencil) else None
 
 
 def _arrays_of(opened: BinaryIO) -> Any:  # noqa: ANN401 - numpy has no name for it
@@ -111,8 +125,7 @@ def _write(file: Path, modes: Modes) -> None:
             opened.flush()
             os.fsync(number)
         os.replace(aside, file)
-        for old in sorted(file.parent.glob("*.npz"), key=lambda f: f.stat().st_mtime)[:-_KEPT]:
-            old.unlink()
+        make_room(file, _KEPT, _ROOM)
     except OSError:
         if aside is not None:  # half of it on a full disk
             with suppress(OSError):

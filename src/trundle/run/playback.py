@@ -12,6 +12,7 @@ from trundle._progress import Progress, Tell, silent
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.run.mode_cache import modes_of
+from trundle.run.parts import with_kept_parts
 from trundle.simulate import PreparedFloor, Runs, Source, lay_out, prepare
 from trundle.simulate.ensembles import batches
 from trundle.simulate.laying_out import point_rows
@@ -207,10 +208,10 @@ def _numbered(spots: Sequence[Spot]) -> dict[str, Spot]:
 def _prepared(study: Study, plan: MethodPlan, progress: Progress) -> PreparedFloor:
     """Return the floor as a method computes it, its modes kept from earlier runs."""
     integration = plan.interaction.integration
-    modes = None
+    floor, modes = with_kept_parts(study.floor), None
     if integration.f_max is not None:
-        modes = modes_of(study.floor, f_max=integration.f_max, progress=progress)
-    return prepare(study.floor, integration, plan.interaction.damping, modes=modes)
+        modes = modes_of(floor, f_max=integration.f_max, progress=progress)
+    return prepare(floor, integration, plan.interaction.damping, modes=modes)
 
 
 def _chosen(

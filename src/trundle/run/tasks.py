@@ -36,6 +36,11 @@ class Task(Protocol):
         """Name of what it leaves, unique in the study and fit for a file."""
         ...
 
+    @property
+    def alone(self) -> bool:
+        """Whether none may be computed beside it in one process."""
+        ...
+
     def seconds(self, size: Size) -> float:
         """Return about how long it takes on two cores, on a floor of some size [s]."""
         ...
@@ -64,6 +69,11 @@ class RunsTask:
     def name(self) -> str:
         """Name of what it leaves."""
         return f"{self.job.name}-runs{self.number:04d}"
+
+    @property
+    def alone(self) -> bool:
+        """Whether none may be computed beside it: a sparse solver answers one at a time."""
+        return not self.job.modal
 
     def seconds(self, size: Size) -> float:
         """Return about how long it takes."""
@@ -116,6 +126,11 @@ class ExactTask:
         """Name of what it leaves."""
         return f"{self.job.name}-exact"
 
+    @property
+    def alone(self) -> bool:
+        """Whether none may be computed beside it: a sparse solver answers one at a time."""
+        return not self.job.modal
+
     def seconds(self, size: Size) -> float:
         """Return about how long it takes."""
         return exact_seconds(self.job, size)
@@ -139,6 +154,11 @@ class MapTask:
     def name(self) -> str:
         """Name of what it leaves."""
         return f"{self.job.name}-map"
+
+    @property
+    def alone(self) -> bool:
+        """Whether none may be computed beside it: a sparse solver answers one at a time."""
+        return not self.job.modal
 
     def seconds(self, size: Size) -> float:
         """Return about how long it takes."""
@@ -172,6 +192,11 @@ class DayTask:
     def name(self) -> str:
         """Name of what it leaves."""
         return f"{self.job.name}-day"
+
+    @property
+    def alone(self) -> bool:
+        """Whether none may be computed beside it: a sparse solver answers one at a time."""
+        return not self.job.modal
 
     def seconds(self, size: Size) -> float:
         """Return about how long it takes."""

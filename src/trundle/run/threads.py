@@ -6,13 +6,11 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from types import TracebackType
+from typing import Any
 
 from trundle._progress import Progress
 from trundle._threads import n_threads
-from trundle.results.parts import Part
-from trundle.run.executor import Shared
-from trundle.run.jobs import PreparedJob
-from trundle.run.tasks import Task
+from trundle.run.executor import Shared, Work
 
 __all__ = ["Threads"]
 
@@ -31,8 +29,8 @@ class Threads:
     def __init__(self) -> None:
         self._at_once = min(_AT_ONCE, n_threads())
         self._stop = threading.Event()
-        self._running: dict[Future[Part], str] = {}
-        self._done: list[tuple[str, Future[Part]]] = []
+        self._running: dict[Future[Any], str] = {}
+        self._done: list[tuple[str, Future[Any]]] = []
         self._pool = ThreadPoolExecutor(self._at_once)
 
     def __enter__(self) -> Threads:
@@ -51,17 +49,14 @@ class Threads:
             self._stop.set()
         self._pool.shutdown()
 
-    def submit(self, task: Task, shared: Shared, progress: Progress) -> None:
-        """Take a task, when so few are running that there is room.
-
-        A sparse solver answers one caller at a time: a task that is not modal has no other beside.
-        """
-        assert isinstance(shared, PreparedJob)  # `here` says that layouts are needed
-        self._collect(self._at_once if task.job.modal else 0)
+    def submit(self, task: Work, shared: Shared, progress: Progress) -> None:
+        """Take a task, when so few are running that there is room."""
+        beside = 0 if task.alone else self._at_once
+        self._collect(beside)
         self._running[self._pool.submit(self._run, task, shared, progress)] = task.name
-        self._collect(self._at_once if task.job.modal else 0)
+        self._collect(beside)
 
-    def finished(self, *, wait: bool) -> Iterator[tuple[str, Part]]:
+    def finished(self, *, wait: bool) -> Iterator[tuple[str, Any]]:
         """Give what is finished, or all as they come."""
         while True:
             yield from self._taken()
@@ -69,7 +64,7 @@ class Threads:
                 return
             self._collect(len(self._running) - 1)
 
-    def _taken(self) -> Iterator[tuple[str, Part]]:
+    def _taken(self) -> Iterator[tuple[str, Any]]:
         """Give what is at hand; an error comes after all that went well."""
         taken, self._done = self._done, []
         for name, future in sorted(taken, key=lambda pair: pair[1].exception() is not None):
@@ -81,7 +76,7 @@ class Threads:
             for future in wait(self._running, return_when=FIRST_COMPLETED).done:
                 self._done.append((self._running.pop(future), future))
 
-    def _run(self, task: Task, laid_out: PreparedJob, progress: Progress) -> Part:
+    def _run(self, task: Work, shared: Shared, progress: Progress) -> Any:  # noqa: ANN401
         """Compute a task, in a thread."""
 
         def tell(share: float) -> None:
@@ -90,4 +85,4 @@ class Threads:
                 raise _StoppedError
             progress(share)
 
-        return task.compute(laid_out, tell)
+        return task.compute(shared, tell)

@@ -11,6 +11,7 @@ from trundle._checks import one_of
 from trundle._progress import Progress
 from trundle._typing import Array
 from trundle.run.mode_cache import modes_of
+from trundle.run.parts import with_kept_parts
 from trundle.simulate import TransferFunctions, transfer
 from trundle.simulate.spectral.transfer import check_lines, modes_needed
 from trundle.structure import Spot
@@ -62,15 +63,16 @@ def transfer_of(
     InputError
         Frequencies that the method does not show, or a place off the floor.
     """
+    floor = with_kept_parts(study.floor)
     integration = method.interaction.integration
     check_lines(np.asarray(frequencies), integration)
     f_max = modes_needed(float(frequencies[-1]), integration)
     return transfer(
-        study.floor,
+        floor,
         loads,
         points,
         frequencies,
         integration=integration,
         damping=method.interaction.damping,
-        modes=modes_of(study.floor, f_max=f_max, progress=progress),
+        modes=modes_of(floor, f_max=f_max, progress=progress),
     )

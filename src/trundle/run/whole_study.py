@@ -26,9 +26,11 @@ from trundle.run.jobs import Job, plan_jobs, prepare_job
 from trundle.run.memory import give_back
 from trundle.run.mesh_light import mesh_change
 from trundle.run.mode_cache import modes_of
+from trundle.run.parts import with_kept_parts
 from trundle.run.progress import Bar
 from trundle.run.tasks import tasks_of
 from trundle.run.threads import Threads
+from trundle.structure import Structure
 from trundle.study.model import Study
 from trundle.traffic import Day
 
@@ -68,19 +70,20 @@ def run_study(
     of_modes = seconds_of_modes(study, jobs)
     costs = {t.name: t.seconds(size_of(study, job)) for job in jobs for t in tasks_of(job)}
     share = of_modes / (of_modes + sum(costs.values()))
-    modes = _all_modes(study, lambda what, done: tell(what, share * done))
-    floors = Floors(study.floor, modes, jobs)
-    batches = [
-        Batch(
-            label=_label(job),
-            job=job,
-            tasks=tasks_of(job),
-            floor=study.floor,
-            lay_out=lambda job=job: prepare_job(job, floors.of(job)),
-        )
-        for job in jobs
-    ]
     with nullcontext(executor) if executor is not None else Threads() as who:
+        floor = with_kept_parts(study.floor, who)
+        modes = _all_modes(study, floor, who, lambda what, done: tell(what, share * done))
+        floors = Floors(floor, modes, jobs)
+        batches = [
+            Batch(
+                label=_label(job),
+                job=job,
+                tasks=tasks_of(job),
+                floor=study.floor,
+                lay_out=lambda job=job: prepare_job(job, floors.of(job)),
+            )
+            for job in jobs
+        ]
         carry_out(batches, who, store, Bar(tell, share, costs))
     result = _result(study, jobs, store, modes)
     result = replace(result, mesh=mesh_change(study, result.cells, modes, _run, tell))
@@ -161,7 +164,7 @@ def _keys(study: Study) -> Iterator[CellKey]:
                 yield CellKey(case.name, road, method.name)
 
 
-def _all_modes(study: Study, tell: Tell) -> Modes | None:
+def _all_modes(study: Study, floor: Structure, who: Executor, tell: Tell) -> Modes | None:
     """Find the modes once, as far as the most demanding method needs them."""
     f_max = max(
         (method.interaction.integration.f_max or 0.0 for method in study.methods), default=0.0
@@ -171,7 +174,9 @@ def _all_modes(study: Study, tell: Tell) -> Modes | None:
     label = f"modes of the floor below {f_max:g} Hz"
     tell(label, 0.0)
     with repeatable():
-        modes = modes_of(study.floor, f_max=f_max, progress=lambda share: tell(label, share))
+        modes = modes_of(
+            floor, f_max=f_max, progress=lambda share: tell(label, share), executor=who
+        )
     _check_first_mode(study, modes)
     return modes
 

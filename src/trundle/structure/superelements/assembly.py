@@ -10,12 +10,13 @@ from jaxtyping import Float
 from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import Superelement
+from trundle.dynamics import RestingPart, Superelement
 from trundle.structure.superelements.pencil import (
     PieceCoordinates,
     ReducedPencil,
     ReducedPiece,
 )
+from trundle.structure.superelements.piece_bases import PieceBasis, WrittenSeam, piece_bases
 from trundle.structure.superelements.seams import (
     Boundary,
     Placed,
@@ -26,7 +27,7 @@ from trundle.structure.superelements.seams import (
     seams_of,
 )
 
-__all__ = ["Joined", "PieceBasis", "join"]
+__all__ = ["Joined", "join"]
 
 _SHORT = 150  # dofs of a seam that keeps them all
 
@@ -37,7 +38,7 @@ class Joined:
 
     Attributes
     ----------
-    parts : tuple of Superelement
+    resting : tuple of RestingPart
         The distinct parts.
     placed : tuple of Placed
         All pieces.
@@ -53,7 +54,7 @@ class Joined:
         Own modes of parts, and of long seams, are kept to these frequencies [Hz].
     """
 
-    parts: tuple[Superelement, ...]
+    resting: tuple[RestingPart, ...]
     placed: tuple[Placed, ...]
     pencil: ReducedPencil
     bases: tuple[PieceBasis, ...]
@@ -64,11 +65,16 @@ class Joined:
     f_seams: float
 
     @property
+    def parts(self) -> tuple[Superelement, ...]:
+        """The distinct parts, reduced."""
+        return tuple(part.reduced for part in self.resting)
+
+    @property
     def told(self) -> str:
         """What a result must say of modes that are found by parts."""
         seams = f", and of {self.n_long} seams to {self.f_seams:g} Hz" if self.n_long else ""
         return (
-            f"modes are found by {len(self.placed)} parts, {len(self.parts)} of them distinct, "
+            f"modes are found by {len(self.placed)} parts, {len(self.resting)} of them distinct, "
             f"whose own modes are kept to {self.f_parts:g} Hz{seams}: frequencies are a little too "
             "high (on four storeys of the reference unit 0.4 % at most below half of that); wider "
             "bands show by how much"
@@ -83,12 +89,11 @@ class Joined:
         for number, (own, columns) in enumerate(zip(self.placed, by_column, strict=True)):
             if not columns.nnz:
                 continue
-            part = self.parts[own.kind]
             signed = sparse.csc_array(columns @ sparse.diags_array(own.sign))
             rows = np.unique(signed.indices)
-            modes, boundary = part.seen(sparse.csr_array(signed)[rows])
+            modes, boundary = self.resting[own.kind].seen(sparse.csr_array(signed)[rows])
             mine, moved = self._of_piece(number, q)
-            out[rows] += modes @ mine + boundary @ moved
+            out[rows] += modes[:, : len(mine)] @ mine + boundary @ moved
         return out
 
     def seams_seen(self, reader: SparseMatrix) -> Float[Array, "rows seams"]:
@@ -100,7 +105,7 @@ class Joined:
             own = self.placed[number]
             signed = sparse.csr_array(columns @ sparse.diags_array(own.sign))
             rows = np.flatnonzero(np.diff(signed.indptr))
-            _, boundary = self.parts[own.kind].seen(signed[rows])
+            _, boundary = self.resting[own.kind].seen(signed[rows])
             seams = self.pencil.pieces[number].seams
             out[np.ix_(rows, seams)] += boundary @ self.bases[number].shapes
         return out
@@ -109,7 +114,7 @@ class Joined:
         """Return the motion of all dofs."""
         out = np.empty((self.n_dofs, q.shape[1]))
         for number, own in enumerate(self.placed):
-            moved = self.parts[own.kind].expanded(*self._of_piece(number, q))
+            moved = self.resting[own.kind].expanded(*self._of_piece(number, q))
             out[own.dofs] = moved * own.sign[:, None]
         return out
 
@@ -122,38 +127,20 @@ class Joined:
             taken[own.dofs] = True
             if not mine.any():
                 continue
-            part, at = self.parts[own.kind], self.pencil.pieces[number]
+            resting, at = self.resting[own.kind], self.pencil.pieces[number]
+            part, n = resting.reduced, self.pencil.n_own(number)
             inner = mine[part.interior]
-            out[at.first : at.first + len(part.omega)] += part.shapes.T @ inner
-            boundary = mine[part.boundary] + part.static.T @ inner
+            out[at.first : at.first + n] += part.shapes[:, :n].T @ inner
+            boundary = mine[part.boundary] + resting.at_boundary(inner[:, None])[:, 0]
             seams = self.pencil.n_modes + at.seams
             out[seams] += self.bases[number].shapes.T @ boundary
         return out
 
     def _of_piece(self, number: int, q: Array) -> tuple[Array, Array]:
         """Return the own modes of a piece and the motion of its boundary, by its own signs."""
-        at, part = self.pencil.pieces[number], self.parts[self.placed[number].kind]
-        own = q[at.first : at.first + len(part.omega)]
+        at = self.pencil.pieces[number]
+        own = q[at.first : at.first + self.pencil.n_own(number)]
         return own, self.bases[number].shapes @ q[self.pencil.n_modes + at.seams]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PieceBasis:
-    """Hold by what the boundary of a piece is written.
-
-    Attributes
-    ----------
-    key : tuple
-        Pieces of one kind with equal keys have the same shapes.
-    shapes : ndarray of float, shape (n_boundary, n_seams)
-        Motion of its boundary, by its own signs, by the coordinates of its seams.
-    seams : ndarray of int, shape (n_seams,)
-        Which coordinates these are, counted from the first of all seams.
-    """
-
-    key: tuple[object, ...]
-    shapes: Float[Array, "boundary seams"]
-    seams: Array
 
 
 def _once(reader: SparseMatrix, joined: Joined) -> list[SparseMatrix]:
@@ -169,7 +156,7 @@ def _once(reader: SparseMatrix, joined: Joined) -> list[SparseMatrix]:
 
 
 def join(
-    parts: Sequence[Superelement],
+    resting: Sequence[RestingPart],
     placed: Sequence[Placed],
     *,
     n_dofs: int,
@@ -180,7 +167,7 @@ def join(
 
     Parameters
     ----------
-    parts : sequence of Superelement
+    resting : sequence of RestingPart
         The distinct parts.
     placed : sequence of Placed
         Where they stand.
@@ -191,25 +178,26 @@ def join(
     tell : callable
         Told the share done.
     """
+    parts = [part.reduced for part in resting]
     boundaries = [Boundary(own.dofs[parts[own.kind].boundary]) for own in placed]
     seams = seams_of(boundaries)
     short, long = _by_length(seams)
     kept = np.concatenate([*(seam.dofs for seam in short), np.zeros(0, dtype=np.intp)])
     known: dict[tuple[object, ...], SeamShapes] = {}
-    written: list[_Written] = []
+    written: list[WrittenSeam] = []
     count = len(kept)
     for done, seam in enumerate(long):
         key = _seam_key(seam, ends_of(seam, short), parts, placed, boundaries)
         if key not in known:
             known[key] = seam_shapes(seam, short, parts, placed, boundaries, f_max=f_seams)
         shapes = replace(known[key], ends=ends_of(seam, short))
-        written.append(_Written(seam=seam, shapes=shapes, key=key, first=count))
+        written.append(WrittenSeam(seam=seam, shapes=shapes, key=key, first=count))
         count += shapes.own.shape[1]
         tell(0.3 * done / len(long))
-    bases = _bases(parts, placed, boundaries, kept, written)
+    bases = piece_bases(parts, placed, boundaries, kept, written)
     tell(0.5)
     return Joined(
-        parts=tuple(parts),
+        resting=tuple(resting),
         placed=tuple(placed),
         pencil=_pencil(parts, placed, bases, count),
         bases=bases,
@@ -235,16 +223,6 @@ def _by_length(seams: Sequence[Seam]) -> tuple[list[Seam], list[Seam]]:
     return short, long
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class _Written:
-    """A long seam, by what it is written, and its first coordinate among all seams'."""
-
-    seam: Seam
-    shapes: SeamShapes
-    key: tuple[object, ...]
-    first: int
-
-
 def _seam_key(
     seam: Seam,
     ends: Array,
@@ -259,62 +237,6 @@ def _seam_key(
         sign = own.sign[parts[own.kind].boundary[rows]]
         found.append((own.kind, rows.tobytes(), (sign < 0.0).tobytes()))
     return tuple(found)
-
-
-def _bases(
-    parts: Sequence[Superelement],
-    placed: Sequence[Placed],
-    boundaries: Sequence[Boundary],
-    kept: Array,
-    written: Sequence[_Written],
-) -> tuple[PieceBasis, ...]:
-    """Return by what the boundary of each piece is written; equal ones share their shapes."""
-    order = np.argsort(kept, kind="stable")
-    shared: dict[tuple[object, ...], Array] = {}
-    touching: list[list[_Written]] = [[] for _ in placed]
-    for one in written:
-        for number in one.seam.pieces:
-            touching[number].append(one)
-    found = []
-    for own, boundary, mine in zip(placed, boundaries, touching, strict=True):
-        place = np.searchsorted(kept[order], boundary.dofs)
-        place = order[np.minimum(place, len(kept) - 1)] if len(kept) else place * 0
-        whole = np.flatnonzero(kept[place] == boundary.dofs) if len(kept) else place[:0]
-        sign = own.sign[parts[own.kind].boundary]
-        followed = [boundary.rows(one.shapes.ends) for one in mine]
-        key = (
-            own.kind,
-            whole.tobytes(),
-            (sign < 0.0).tobytes(),
-            *((one.key, boundary.rows(one.seam.dofs).tobytes()) for one in mine),
-        )
-        if key not in shared:
-            shared[key] = _shapes(boundary, whole, sign, mine, followed)
-        seams = [place[whole], *(np.arange(o.shapes.own.shape[1]) + o.first for o in mine)]
-        found.append(PieceBasis(key=key, shapes=shared[key], seams=np.concatenate(seams)))
-    return tuple(found)
-
-
-def _shapes(
-    boundary: Boundary,
-    whole: Array,
-    sign: Array,
-    long: Sequence[_Written],
-    followed: Sequence[Array],
-) -> Array:
-    """Return the motion of a piece's boundary by the coordinates of its seams."""
-    n_own = [one.shapes.own.shape[1] for one in long]
-    out = np.zeros((len(boundary.dofs), len(whole) + sum(n_own)))
-    out[whole, np.arange(len(whole))] = 1.0
-    column = np.full(len(boundary.dofs), -1, dtype=np.intp)
-    column[whole] = np.arange(len(whole))
-    first = len(whole)
-    for one, ends, n in zip(long, followed, n_own, strict=True):
-        rows = boundary.rows(one.seam.dofs)
-        out[np.ix_(rows, column[ends])] = one.shapes.follow
-        out[rows, first : first + n] = one.shapes.own
-        first += n
-    return out * sign[:, None]
 
 
 def _pencil(

@@ -19,7 +19,6 @@ from scipy import sparse
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, HalfSolve, factorise
 from trundle.structure.superelements.assembly import Joined
-from trundle.structure.superelements.reduction import Sorted
 
 __all__ = ["PartedFlexibility"]
 
@@ -29,22 +28,13 @@ class PartedFlexibility:
 
     n_negative = 0
 
-    def __init__(self, joined: Joined, pieces: Sorted) -> None:
-        """`pieces` are those that `joined` was reduced from."""
-        self._joined, self._pieces = joined, pieces
-        self._inner: dict[int, Factor] = {}
+    def __init__(self, joined: Joined) -> None:
+        """Take a structure by its parts."""
+        self._joined = joined
 
     @cached_property
     def _seams(self) -> Factor:
         return factorise(self._joined.pencil.seam_stiffness)
-
-    def _inside(self, kind: int) -> Factor:
-        """Return the factor of a distinct part that is held at its boundary."""
-        if kind not in self._inner:
-            inner = self._joined.parts[kind].interior
-            stiffness = sparse.csc_array(self._pieces.distinct[kind].stiffness)
-            self._inner[kind] = factorise(stiffness[:, inner][inner].tocsc())
-        return self._inner[kind]
 
     def solve(self, right_hand_side: Array) -> Array:
         """Return the deflection of all dofs under loads, (n_dofs,) or (n_dofs, n_loads)."""
@@ -56,10 +46,11 @@ class PartedFlexibility:
         moved[n:] = self._seams.solve(pushed[n:])
         out = joined.expanded(moved)
         for own in joined.placed:
-            rows = own.dofs[joined.parts[own.kind].interior]
+            resting = joined.resting[own.kind]
+            rows = own.dofs[resting.reduced.interior]
             if np.any(load[rows]):
-                sign = own.sign[joined.parts[own.kind].interior][:, None]
-                out[rows] += sign * self._inside(own.kind).solve(sign * load[rows])
+                sign = own.sign[resting.reduced.interior][:, None]
+                out[rows] += sign * resting.under(sign * load[rows])
         return out.reshape(right_hand_side.shape)
 
     def between(self, rows: SparseMatrix, columns: SparseMatrix) -> Float[Array, "rows columns"]:
@@ -69,13 +60,13 @@ class PartedFlexibility:
         out = seen @ self._seams.solve(np.ascontiguousarray(pushed.T))
         by_row, by_column = sparse.csc_array(rows), sparse.csc_array(columns)
         for own in joined.placed:
-            inner = joined.parts[own.kind].interior
+            inner = joined.resting[own.kind].reduced.interior
             mine, theirs = by_row[:, own.dofs[inner]], by_column[:, own.dofs[inner]]
             if mine.nnz and theirs.nnz:
                 sign = own.sign[inner]
                 loads = np.flatnonzero(np.diff(sparse.csr_array(theirs).indptr))
                 full = sparse.csr_array(theirs)[loads].toarray().T * sign[:, None]
-                moved = self._inside(own.kind).solve(full)
+                moved = joined.resting[own.kind].under(full)
                 out[:, loads] += (mine @ sparse.diags_array(sign)) @ moved
         return out
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+from jaxtyping import Int
+from scipy import sparse
 
-from trundle._progress import Tell, silent
-from trundle._typing import Array
-from trundle.dynamics import Superelement, reduce_part
+from trundle._progress import Progress, Tell, silent
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import RestingPart, Superelement, reduce_part
 from trundle.structure.assembly import ElementBlocks, blocks_of
 from trundle.structure.elements.protocol import Elements
 from trundle.structure.floor import Floor
@@ -18,7 +22,7 @@ from trundle.structure.superelements.cuts import Share
 from trundle.structure.superelements.pieces import Alike, Piece, like, pieces_of
 from trundle.structure.superelements.seams import Placed
 
-__all__ = ["Sorted", "reduced_structure", "sorted_pieces"]
+__all__ = ["Part", "Reducer", "Sorted", "joined_parts", "reduced_here", "sorted_pieces"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,6 +42,44 @@ class Sorted:
     distinct: tuple[Piece, ...]
     boundaries: tuple[Array, ...]
     placed: tuple[Placed, ...]
+
+    def part(self, number: int) -> Part:
+        """Return what a reduction needs of one of the distinct ones."""
+        piece = self.distinct[number]
+        return Part(mass=piece.mass, stiffness=piece.stiffness, boundary=self.boundaries[number])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Part:
+    """Hold what a reduction needs: it can then be done anywhere.
+
+    Attributes
+    ----------
+    mass, stiffness : sparse array, shape (n_dofs, n_dofs)
+        Of the part alone [kg], [N/m].
+    boundary : ndarray of int, shape (n_boundary,)
+        Rows at which it meets others, rising.
+    """
+
+    mass: SparseMatrix
+    stiffness: SparseMatrix
+    boundary: Int[Array, " boundary"]
+
+    @property
+    def content_hash(self) -> str:
+        """Hash of all that decides its reduction; equal parts share it."""
+        digest = hashlib.sha256(self.boundary.astype(np.int64).tobytes())
+        for matrix in (self.mass, self.stiffness):
+            ordered = sparse.csc_array(matrix, copy=True)
+            ordered.sort_indices()
+            for values in (ordered.indptr, ordered.indices):
+                digest.update(values.astype(np.int64).tobytes())
+            digest.update(ordered.data.tobytes())
+        return digest.hexdigest()[:24]
+
+    def reduced(self, f_max: float, *, progress: Progress | None = None) -> Superelement:
+        """Reduce it, its own modes kept below a frequency [Hz]."""
+        return reduce_part(self.mass, self.stiffness, self.boundary, f_max=f_max, progress=progress)
 
 
 def sorted_pieces(floor: Floor, shares: Sequence[Share], *, tell: Tell = silent) -> Sorted:
@@ -95,38 +137,61 @@ def _found(piece: Piece, distinct: Sequence[Piece], *, turned: bool) -> tuple[in
     return len(distinct), None
 
 
-def reduced_structure(
-    pieces: Sorted, *, n_dofs: int, f_parts: float, f_seams: float, tell: Tell = silent
-) -> Joined:
-    """Reduce every distinct piece, and join all.
+Reducer: TypeAlias = Callable[[Sorted, float, Tell], Sequence[Superelement]]
+"""Who reduces the distinct parts, keeping their own modes below a frequency [Hz]."""
+
+
+def reduced_here(pieces: Sorted, f_parts: float, tell: Tell = silent) -> list[Superelement]:
+    """Reduce every distinct part, one after the other.
 
     Parameters
     ----------
     pieces : Sorted
         The pieces.
-    n_dofs : int
-        Number of free dofs of the structure.
-    f_parts, f_seams : float
-        Own modes of pieces, and of long seams, below are kept [Hz].
+    f_parts : float
+        Own modes below are kept [Hz].
     tell : callable
         Told what is being done, and the share done.
     """
-    parts: list[Superelement] = []
-    for number, (piece, boundary) in enumerate(
-        zip(pieces.distinct, pieces.boundaries, strict=True)
-    ):
+    found: list[Superelement] = []
+    for number, piece in enumerate(pieces.distinct):
         what = f"part {number + 1} of {len(pieces.distinct)}, {len(piece.dofs)} dofs"
-        parts.append(
-            reduce_part(
-                piece.mass,
-                piece.stiffness,
-                boundary,
-                f_max=f_parts,
-                progress=lambda share, what=what: tell(what, share),
-            )
-        )
+
+        def progress(share: float, what: str = what) -> None:
+            tell(what, share)
+
+        found.append(pieces.part(number).reduced(f_parts, progress=progress))
+    return found
+
+
+def joined_parts(
+    pieces: Sorted,
+    parts: Sequence[Superelement],
+    *,
+    n_dofs: int,
+    f_seams: float,
+    tell: Tell = silent,
+) -> Joined:
+    """Join pieces of which the distinct ones are reduced.
+
+    Parameters
+    ----------
+    pieces : Sorted
+        The pieces.
+    parts : sequence of Superelement
+        The distinct ones, reduced.
+    n_dofs : int
+        Number of free dofs of the structure.
+    f_seams : float
+        Own modes of long seams below are kept [Hz].
+    tell : callable
+        Told what is being done, and the share done.
+    """
     return join(
-        parts,
+        [
+            RestingPart(reduced=part, stiffness=piece.stiffness)
+            for part, piece in zip(parts, pieces.distinct, strict=True)
+        ],
         pieces.placed,
         n_dofs=n_dofs,
         f_seams=f_seams,

@@ -20,7 +20,13 @@ from trundle.structure.model import MirrorPlane
 from trundle.structure.superelements.assembly import Joined
 from trundle.structure.superelements.cuts import Cuts, Share, shares_in_halves, shares_of
 from trundle.structure.superelements.flexibility import PartedFlexibility
-from trundle.structure.superelements.reduction import Sorted, reduced_structure, sorted_pieces
+from trundle.structure.superelements.reduction import (
+    Reducer,
+    Sorted,
+    joined_parts,
+    reduced_here,
+    sorted_pieces,
+)
 from trundle.structure.surface import Surface
 
 __all__ = ["PartedStructure", "Parting"]
@@ -90,6 +96,8 @@ class PartedStructure:
         The structure.
     parting : Parting
         How it is cut.
+    reducer : Reducer
+        Who reduces the distinct parts; this process, one after the other, unless given.
 
     Notes
     -----
@@ -100,6 +108,7 @@ class PartedStructure:
 
     whole: Floor
     parting: Parting
+    reducer: Reducer = reduced_here
 
     @property
     def name(self) -> str:
@@ -188,21 +197,34 @@ class PartedStructure:
     @cached_property
     def joined(self) -> Joined:
         """The same, by its reduced parts."""
-        return self.reduced()
+        return self._reduce(silent)
 
     def reduced(self, *, tell: Tell = silent) -> Joined:
-        """Reduce its parts, and join them."""
-        return reduced_structure(
+        """Return it by its reduced parts, and tell of their reduction unless that is done."""
+        if "joined" not in self.__dict__:
+            self.__dict__["joined"] = self._reduce(tell)
+        return self.joined
+
+    def _reduce(self, tell: Tell) -> Joined:
+        return joined_parts(
             self.pieces,
+            self.reducer(self.pieces, self.parting.f_parts, tell),
             n_dofs=self.n_dofs,
-            f_parts=self.parting.f_parts,
             f_seams=self.parting.f_seams,
             tell=tell,
         )
 
+    def check_reach(self, f_max: float) -> None:
+        """Refuse to look for modes so high [Hz] that parts are not kept far enough for them."""
+        if f_max > self.parting.f_parts / _LEAST:
+            raise InputError(
+                f"{self.name}: own modes of parts are kept to {self.parting.f_parts:g} Hz, not "
+                f"enough for modes to {f_max:g} Hz: keep them to {2 * f_max:g} Hz"
+            )
+
     def flexibility(self) -> Factor:
         """Return what solves for static deflections, part by part."""
-        return PartedFlexibility(self.joined, self.pieces)
+        return PartedFlexibility(self.joined)
 
     def modes(self, f_max: float, *, progress: Progress | None = None) -> Modes:
         """Return all natural modes of the reduced structure below a frequency [Hz].
@@ -215,11 +237,7 @@ class PartedStructure:
         InputError
             The parts are kept to less than 1.2 times that frequency.
         """
-        if f_max > self.parting.f_parts / _LEAST:
-            raise InputError(
-                f"{self.name}: own modes of parts are kept to {self.parting.f_parts:g} Hz, not "
-                f"enough for modes to {f_max:g} Hz: keep them to {2 * f_max:g} Hz"
-            )
+        self.check_reach(f_max)
         told = progress or _nobody
         told(0.0)
         joined = self.joined

@@ -17,6 +17,7 @@ from trundle.dynamics.lanczos import Interval
 from trundle.dynamics.modes import Basis, Modes
 from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
 from trundle.dynamics.pencil import Pencil, Product, SparsePencil, shift_near
+from trundle.dynamics.response_basis import ResponseBasis, response_basis
 from trundle.dynamics.same_bits import repeatable
 from trundle.dynamics.sampling import (
     REACH,
@@ -54,6 +55,7 @@ __all__ = [
     "Product",
     "Propagator",
     "Rayleigh",
+    "ResponseBasis",
     "RestingPart",
     "SparsePencil",
     "State",
@@ -78,6 +80,7 @@ __all__ = [
     "part_from_arrays",
     "reduce_part",
     "repeatable",
+    "response_basis",
     "responses_of",
     "restoring_filter",
     "shift_near",

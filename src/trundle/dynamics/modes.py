@@ -116,6 +116,20 @@ class Modes:
         """Return the first modes, with the same `f_max`."""
         return self.part(slice(n_modes))
 
+    def combined(
+        self, columns: Float[Array, "modes basis"], omega: Float[Array, " basis"]
+    ) -> Modes:
+        """Return combinations of the modes in their place (`dynamics.response_basis`).
+
+        `columns` says how much of each mode, `omega` at which circular frequency [rad/s].
+        """
+        return replace(
+            self,
+            omega=omega,
+            shapes=self.shapes @ columns,
+            residuals=np.full(len(omega), self.residuals.max(initial=0.0)),
+        )
+
     def part(self, which: slice) -> Modes:
         """Return some of the modes, with the same `f_max`."""
         return replace(

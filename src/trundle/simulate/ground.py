@@ -37,6 +37,11 @@ class Ground(Protocol):
         """Whether it moves under the wheels."""
         ...
 
+    @property
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """What a result must say of how it lies under these wheels."""
+        ...
+
     def check(self, wheels: Wheels) -> None:
         """Refuse contacts that the time step does not bear."""
         ...

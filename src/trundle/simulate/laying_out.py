@@ -81,14 +81,15 @@ def lay_out(
             "no wheel loads the floor at any step: the route runs along an edge that is held, or "
             "is shorter than a step; move it onto the floor, or lengthen it"
         )
+    ground = floor.under(rows, point_rows(floor.floor, points), coupled=method.moves)
     layout = Layout(
         sources=sources,
         method=method,
-        doubts=(*fitness_warnings(sources, floor, method.contact), *doubts),
+        doubts=(*fitness_warnings(sources, floor, method.contact), *doubts, *ground.doubts),
         point_names=tuple(points),
         timeline=timeline,
         rows=rows,
-        ground=floor.under(rows, point_rows(floor.floor, points), coupled=method.moves),
+        ground=ground,
         horizontal=tuple(i for i, spot in enumerate(_spots(points)) if spot.axis != "z"),
     )
     layout.ground.check(layout.wheels)

@@ -32,6 +32,11 @@ class RigidForNewmark:
         """Whether it moves under the wheels: never."""
         return False
 
+    @property
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """Return none."""
+        return ()
+
     def check(self, wheels: Wheels) -> None:
         """Bear any contact."""
 
@@ -74,6 +79,11 @@ class FullGround:
     floor: FullFloor
     integration: NewmarkParameters
     coupled: bool
+
+    @property
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """Return none."""
+        return ()
 
     def check(self, wheels: Wheels) -> None:
         """Bear any contact: all is solved at the end of the step."""

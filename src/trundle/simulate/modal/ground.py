@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from trundle._progress import Progress
 from trundle._typing import Array
-from trundle.errors import InputError
+from trundle.errors import FitnessWarning, InputError
 from trundle.simulate.modal.block_march import drive_in_blocks
 from trundle.simulate.modal.floor import ModalFloor
 from trundle.simulate.modal.followers import Followers
@@ -37,6 +37,8 @@ class ModalGround:
         What completes the motion at the points.
     coupled : bool
         Whether it moves under the wheels.
+    doubts : tuple of FitnessWarning
+        What a result must say of it.
     """
 
     floor: ModalFloor
@@ -44,6 +46,7 @@ class ModalGround:
     followers: Followers | None
     filters: PointFilters
     coupled: bool
+    doubts: tuple[FitnessWarning, ...] = ()
 
     def check(self, wheels: Wheels) -> None:
         """Refuse a step at which vehicle and floor would push each other up without end."""
@@ -95,6 +98,11 @@ class RigidForExactSteps:
     def coupled(self) -> bool:
         """Whether it moves under the wheels: never."""
         return False
+
+    @property
+    def doubts(self) -> tuple[FitnessWarning, ...]:
+        """Return none."""
+        return ()
 
     def check(self, wheels: Wheels) -> None:
         """Bear any contact."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from jaxtyping import Int
 
-from trundle._checks import positive, set_frozen
+from trundle._checks import positive, set_frozen, within
 from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import TOP, ByMaterial, Damping, ModalRecursion, Modes
+from trundle.dynamics import TOP, ByMaterial, Damping, ModalRecursion, Modes, response_basis
 from trundle.errors import FitnessWarning, InputError
 from trundle.signals import TOP_FREQUENCY
 from trundle.simulate.ground import ModalReach
@@ -44,21 +44,28 @@ class Modal:
         Add the static flexibility of the modes left out (True), or leave them out altogether.
     single : bool
         Carry the floor's state over the steps in single precision: faster, to some 1e-4.
+    response_tolerance : float
+        Step as few combinations of modes as answer between route and points within this error
+        (`dynamics.response_basis`); 0 for all modes.
     """
 
     f_max: float
     dt: float
     residual: bool = True
     single: bool = False
+    response_tolerance: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check both numbers."""
+        """Check all numbers."""
         set_frozen(self, f_max=positive("f_max", self.f_max), dt=positive("dt", self.dt))
+        within("response_tolerance", self.response_tolerance, 0.0, 0.1)
 
     def __str__(self) -> str:
         """Describe the method for a report."""
         rest = "" if self.residual else "nothing for the modes above, "
         rest += "single precision, " if self.single else ""
+        if self.response_tolerance:
+            rest += f"combined within {100 * self.response_tolerance:g} %, "
         return (
             f"modal superposition, modes below {self.f_max:g} Hz, {rest}exact recursion, "
             f"dt = {1e3 * self.dt:g} ms"
@@ -232,6 +239,15 @@ class FloorInModes:
         self, standing: StandingWheels, reader: SparseMatrix, *, coupled: bool
     ) -> ModalGround:
         """Lie under wheels."""
+        if self.integration.response_tolerance:
+            fewer, doubts = self._combined(standing.used_dofs(), reader)
+            return replace(fewer._lying(standing, reader, coupled=coupled), doubts=doubts)
+        return self._lying(standing, reader, coupled=coupled)
+
+    def _lying(
+        self, standing: StandingWheels, reader: SparseMatrix, *, coupled: bool
+    ) -> ModalGround:
+        """Lie under wheels with all modes that are held."""
         residual, dofs = None, standing.used_dofs()
         if self.residual:
             residual = point_residual(self.flexibility, self.modes, reader, dofs)
@@ -251,6 +267,34 @@ class FloorInModes:
             filters=point_filters(floor, residual, followers),
             coupled=coupled,
         )
+
+    def _combined(
+        self, dofs: Int[Array, " dofs"], reader: SparseMatrix
+    ) -> tuple[FloorInModes, tuple[FitnessWarning, ...]]:
+        """Return the same in as few combinations of its modes as a route and points need."""
+        tolerance, n_modes = self.integration.response_tolerance, self.modes.n_modes
+        basis = response_basis(
+            self.modes.omega,
+            self.propagator.double / (2.0 * self.modes.omega),
+            self.modes.at(dofs),
+            self.modes.seen(reader),
+            f_max=self.integration.f_resolved,
+            tolerance=tolerance,
+        )
+        if basis is None:
+            return self, ()
+        fewer = replace(
+            self,
+            modes=self.modes.combined(basis.combined, basis.omega),
+            propagator=ModalRecursion(basis.omega, basis.ratios, self.integration.dt),
+        )
+        told = FitnessWarning(
+            subject="response basis",
+            message=f"{n_modes} modes are stepped as {len(basis.omega)} combinations of them: "
+            f"between route and points their response differs by {100 * basis.error:.2g} % in the "
+            "worst band (RMS of the difference over that of the response), static parts left out",
+        )
+        return fewer, (told,)
 
     def reach(self, dofs: Int[Array, " dofs"], reader: SparseMatrix) -> ModalReach:
         """Return how forces at dofs reach readings, for all modes kept."""

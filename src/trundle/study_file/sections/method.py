@@ -52,6 +52,7 @@ class MethodSection(Section):
     integration: Literal["modal", "newmark"] = "modal"
     f_max: Frequency | None = None
     precision: Literal["double", "single"] = "double"
+    response_tolerance: Ratio | None = None
     dt: Time
     n_max: Wavenumber | None = None
     contact_patch: NonNegativeLength | None = None
@@ -60,6 +61,8 @@ class MethodSection(Section):
     entry: Literal["drive_in", "ramp", "static", "abrupt"] = "drive_in"
     entry_length: PositiveLength | None = None
 
+
+_COARSEST = 0.05  # error of combined modes that is allowed
 
 METHOD = SectionKind(name="method", schema=MethodSection, form="list", required=True)
 
@@ -210,7 +213,20 @@ def _integration(section: MethodSection, place: str, reach: float | None) -> Int
             rule="modal superposition needs the frequency up to which modes are kept",
             remedy='add f_max = "112 Hz": 1.25 times the end of the 80 Hz band',
         )
-    return Modal(f_max=f_max, dt=section.dt, single=section.precision == "single")
+    tolerance = section.response_tolerance or 0.0
+    if tolerance > _COARSEST:
+        return Problem(
+            place=f"{place}.response_tolerance",
+            value=f"{tolerance:g}",
+            rule=f"modes are combined within {_COARSEST:g} at the coarsest: levels would be off",
+            remedy="write 0.005, or leave it out and all modes are stepped",
+        )
+    return Modal(
+        f_max=f_max,
+        dt=section.dt,
+        single=section.precision == "single",
+        response_tolerance=tolerance,
+    )
 
 
 def _step_by_step(section: MethodSection, place: str) -> Newmark | Problem:
@@ -228,6 +244,13 @@ def _step_by_step(section: MethodSection, place: str) -> Newmark | Problem:
             value="'single'",
             rule="direct integration is in double precision",
             remedy=f"remove precision, {remedy}",
+        )
+    if section.response_tolerance is not None:
+        return Problem(
+            place=f"{place}.response_tolerance",
+            value=f"{section.response_tolerance:g}",
+            rule="direct integration has no modes to combine",
+            remedy=f"remove response_tolerance, {remedy}",
         )
     return Newmark(dt=section.dt)
 

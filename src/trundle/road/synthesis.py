@@ -140,7 +140,10 @@ def draw_spectrum(
         pair = rng.standard_normal((2, len(waves))) / np.sqrt(2.0)
         coefficient = amplitude * (pair[0] + 1j * pair[1])
     else:
-        coefficient = amplitude * np.exp(2j * np.pi * rng.random(len(waves)))
+        turns = rng.random(len(waves))
+        coefficient = np.zeros(len(waves), dtype=complex)
+        held = amplitude > 0.0  # a tenth of all lines: the spacing is far below the shortest wave
+        coefficient[held] = amplitude[held] * np.exp(2j * np.pi * turns[held])
     coefficient[0] = 0.0
     if n_samples % 2 == 0:
         coefficient[-1] = 0.0  # a wave at the sampling limit has no defined phase

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from jaxtyping import Float
 from scipy import special
@@ -95,11 +97,21 @@ def synthesise_tracks(
 
 
 def _mix(spectra: list[Array], waves: Array, lateral: Array) -> list[Array]:
-    distance = np.abs(lateral[:, None] - lateral)
-    ratio = _amplitude_ratio(waves[:, None, None], distance)
-    factor = np.linalg.cholesky(ratio + _JITTER * np.eye(len(lateral)))
+    factor = _mixing(tuple(lateral.tolist()), len(waves), float(waves[1]))
     mixed = np.einsum("wij,jw->iw", factor, np.array(spectra))
     return [spectra[0], *mixed[1:]]
+
+
+@lru_cache(maxsize=4)  # an ensemble mixes its roads alike
+def _mixing(
+    lateral: tuple[float, ...], n_waves: int, resolution: float
+) -> Float[Array, "waves tracks tracks"]:
+    """Return what independent draws are mixed by at every wave."""
+    waves, places = resolution * np.arange(n_waves), np.array(lateral)
+    ratio = _amplitude_ratio(waves[:, None, None], np.abs(places[:, None] - places))
+    factor = np.linalg.cholesky(ratio + _JITTER * np.eye(len(places)))
+    factor.flags.writeable = False
+    return factor
 
 
 _JITTER = 1e-10  # long waves are the same in every track: the matrix is then singular

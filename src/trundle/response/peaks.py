@@ -117,13 +117,16 @@ class DrawnHistories:
         random = self.random[name].reshape(self.n_draws, *mean.shape)
         shape = (len(_FACTORS), self.n_draws, mean.shape[1])
         found = LargestValues(mean=np.zeros(shape), random=np.zeros(shape))
+        still = np.ascontiguousarray(mean.T)
 
         def draw(i: int) -> None:
             """Look through one history at every point."""
-            points = np.arange(mean.shape[1])
+            points, own = np.arange(mean.shape[1]), np.ascontiguousarray(random[i].T)
             for k, factor in enumerate(_FACTORS):
-                at = np.abs(mean + np.float32(factor) * random[i]).argmax(axis=0)
-                found.mean[k, i], found.random[k, i] = mean[at, points], random[i, at, points]
+                history = np.float32(factor) * own
+                history += still
+                at = np.abs(history, out=history).argmax(axis=1)
+                found.mean[k, i], found.random[k, i] = mean[at, points], own[points, at]
 
         _each(draw, range(self.n_draws))
         return found

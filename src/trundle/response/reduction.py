@@ -26,7 +26,7 @@ from trundle.simulate import MeanResponse, Runs
 
 __all__ = ["RunLevels", "join", "percentile_interval", "reduce_on_scaled_roads", "reduce_runs"]
 
-_TOGETHER = 64  # runs whose filtered histories are held at once
+_TOGETHER = 16  # runs whose filtered histories are held at once: they stay in cache
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -187,16 +187,18 @@ def _add(sums: _Sums, answer: Harmonics, filters: list[Array]) -> None:
         sums.add(name, np.sum(power * square, axis=0))
         sums.add(f"coarse {name}", np.sum(coarse * square, axis=0))
     velocity = np.moveaxis(answer.velocity, 1, -1)
+    parts = [np.ascontiguousarray(part) for part in (np.real(velocity), np.imag(velocity))]
     with ThreadPoolExecutor(n_threads()) as pool:
-        energy = list(pool.map(lambda sos: _energy(sos, velocity, answer.power), filters))
+        energy = list(pool.map(lambda sos: _energy(sos, parts, answer.power), filters))
     sums.add("bands", np.array(energy).reshape(len(filters), *velocity.shape[1:]))
     sums.n_waves += len(answer.power)
 
 
-def _energy(sos: Array, velocity: Array, power: Array) -> Array:
+def _energy(sos: Array, parts: Sequence[Array], power: Array) -> Array:
     """Return the variance that waves give a band: cosine and sine are filtered apart."""
-    parts = (signal.sosfilt(sos, part, axis=-1) for part in (np.real(velocity), np.imag(velocity)))
-    return np.sum([np.einsum("w,wps->ps", power, part**2) for part in parts], axis=0)
+    passed = (np.asarray(signal.sosfilt(sos, part, axis=-1)) for part in parts)
+    squares = (np.square(one, out=one) for one in passed)
+    return np.sum([np.einsum("w,wps->ps", power, square) for square in squares], axis=0)
 
 
 def _quadrature_error(sums: _Sums) -> float:

@@ -33,7 +33,7 @@ from trundle.simulate.spectral.places import PlaceResponses
 __all__ = ["place_spectra"]
 
 _PLACES = 100  # answered for at once, at most: what is made of them stays in memory used before
-_LINES = 16  # whose responses are formed at once: they stay in cache
+_LINES = 16  # whose responses are formed at once
 _TURNED = 32  # multiplied at once, and turned in cache
 _LOAD_BYTES = 25e6  # loads on the route's dofs in time, for a thread: memory that is used again
 _SPECTRUM_BYTES = 8e8  # their spectra held at once
@@ -158,14 +158,24 @@ def _responses(
                 [restored * modal + responses_of(image, turn), responses_of(follow, turn)]
             )
             for take in (np.real, np.imag):
-                driven = take(whole).astype(kind)[:, :, None] * shapes
-                take(out)[part] = read @ driven  # both are views
+                _read(read, take(whole).astype(kind), shapes, out=take(out)[part])  # views both
             if places.residual is not None:
                 static = responses_of(rate, turn)[:, :, None] * places.residual[group]
                 out[part] += static.astype(out.dtype)
 
     _in_threads(form, range(0, len(lines), _LINES))
     return found
+
+
+def _read(read: Array, motion: Array, shapes: Array, *, out: Array) -> None:
+    """Put ``read @ (motion * shapes)`` in place, line by line: what is in between stays in cache.
+
+    `motion` is that of every mode by its force, (n_lines, n_modes).
+    """
+    driven = np.empty_like(shapes)
+    for seen, line in zip(out, motion, strict=True):
+        np.multiply(line[:, None], shapes, out=driven)
+        seen[:] = read @ driven
 
 
 def _modal_motion(

@@ -1,5 +1,6 @@
 """The block solver: its answers do not depend on how time and runs are cut."""
 
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +23,8 @@ from trundle.simulate import (
     mean_response,
 )
 from trundle.simulate.modal import block_march as march
-from trundle.simulate.modal import powers
+from trundle.simulate.modal import kept_maps, powers
+from trundle.simulate.modal.kept_maps import KeptMaps
 from trundle.vehicle import container_truck_40ft, quarter_car
 
 POINTS = {"a": (3.0, 3.0), "b": (7.3, 1.9)}
@@ -53,6 +55,35 @@ def test_any_length_of_block_gives_the_same(monkeypatch, kind, length):
     other = ensemble(floor, way(), **settings)
     for name in ("displacement", "velocity", "acceleration", "contact_forces"):
         assert difference(getattr(other, name), getattr(reference, name)) < 1e-9
+
+
+@pytest.mark.parametrize("kind", [Coupled, Decoupled])
+@pytest.mark.parametrize("room", [0.0, 1e5, 1e9])
+def test_a_second_drive_over_a_layout_gives_the_same_bits(monkeypatch, kind, room):
+    """It finds maps of blocks that the first formed: all, some, or none where there is no room."""
+    monkeypatch.setattr(kept_maps, "_ROOM", room)
+    method = kind(integration=Modal(f_max=60.0, dt=0.005), damping=ModalRatio(ratio=0.02))
+    floor = small_floor(mesh_size=2.0)
+    layout = lay_out(floor, way(), method=method, points=POINTS, duration=3.1)
+    first, second = (next(batches(layout, runs=range(3), seed=4)) for _ in range(2))
+    for name in ("displacement", "velocity", "acceleration", "contact_forces"):
+        assert np.array_equal(getattr(first, name), getattr(second, name))
+
+
+def test_maps_are_kept_while_there_is_room_and_travel_without(monkeypatch):
+    """What is kept is not formed again; what has no room is; a copy elsewhere starts empty."""
+    monkeypatch.setattr(kept_maps, "_ROOM", 100.0)
+    kept, formed = KeptMaps(), []
+
+    def form(number):
+        formed.append(number)
+        return (np.full(10, float(number)),)  # 80 bytes
+
+    for number in (1, 2, 1, 2):
+        assert kept.of(number, lambda number=number: form(number))[0][0] == number
+    assert formed == [1, 2, 2]
+    pickle.loads(pickle.dumps(kept)).of(1, lambda: form(1))
+    assert formed == [1, 2, 2, 1]
 
 
 def test_both_ways_to_carry_a_force_through_a_block_agree(monkeypatch):

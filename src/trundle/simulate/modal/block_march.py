@@ -199,9 +199,7 @@ class _March:
         """Return the function that forms the block after a step."""
         springs = self._springs
         columns = (springs.stiffness[:, 0], springs.damping[:, 0])
-        self._powers = powers = FloorPowers(
-            floor.propagator, floor.points, self._length, single=floor.dtype == np.float32
-        )
+        self._powers = powers = floor.powers(self._length)
         if solve:
             return lambda first, count: contact_block(
                 floor, powers, self._vehicle, first, count, springs=columns

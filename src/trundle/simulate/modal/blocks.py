@@ -122,22 +122,30 @@ def contact_block(
     rows = _contact_rows(floor, first, n_steps, springs, on_floor)
     at = powers.place(first)
     late = rows_on_state(rows, powers.phi[at : at + n_steps])
-    pushed = np.zeros((n_steps, n, n_steps + 1, n))
-    pushed[:, on_floor[:, None], :, on_floor] = _floor_influence(load, powers, (rows, late), first)
-    _add_residual(pushed, floor, first, *springs)
     standing = (np.arange(n_steps)[:, None] * n + on_floor).ravel()
+
+    def form() -> tuple[Array, Array]:
+        """Form what drives share."""
+        pushed = np.zeros((n_steps, n, n_steps + 1, n))
+        influence = _floor_influence(load, powers, (rows, late), first)
+        pushed[:, on_floor[:, None], :, on_floor] = influence
+        _add_residual(pushed, floor, first, *springs)
+        by_known = _contact_maps(pushed.reshape(n_steps * n, -1), vehicle, n_steps, standing)
+        return by_known, _points_by_forces(powers, load)
+
+    by_known, points = floor.kept.of((first, n_steps), form)
     late = late.reshape(len(standing), 2 * floor.n_modes)
     return Block(
         n_steps=n_steps,
-        contact=_contact_maps(pushed.reshape(n_steps * n, -1), vehicle, n_steps, standing),
-        floor=_floor_maps(floor, load, powers, first, late, on_floor=on_floor),
+        contact=ContactMaps(by_known=by_known, vehicle=vehicle.last_state(n_steps)),
+        floor=_floor_maps(floor, load, powers, first, (late, points), on_floor=on_floor),
     )
 
 
-def _contact_maps(
-    pushed: Array, vehicle: VehiclePowers, n_steps: int, standing: Array
-) -> ContactMaps:
+def _contact_maps(pushed: Array, vehicle: VehiclePowers, n_steps: int, standing: Array) -> Array:
     """Solve a block's contact forces, given what forces push at the vehicle through the floor.
+
+    Returns `ContactMaps.by_known`.
 
     With f, g for the block and f0, g0 for the step before it: ``g = A0 f0 + A f + felt`` and
     ``f = f_rigid + T g - V0 g0 - [kE, cE] Phi^k zeta0``, where ``T = 1 - V`` is what a push at the
@@ -161,7 +169,7 @@ def _contact_maps(
     states = vehicle.push_by_state.shape[1]
     push[:, size + states + n : size + states + 2 * n] += before
     push[standing, size + states + 2 * n + np.arange(len(standing))] += 1.0
-    return ContactMaps(by_known=np.vstack([forces, push]), vehicle=vehicle.last_state(n_steps))
+    return np.vstack([forces, push])
 
 
 def load_block(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int) -> Block:
@@ -169,7 +177,8 @@ def load_block(floor: ModalFloor, powers: FloorPowers, first: int, n_steps: int)
     none = np.zeros((0, 2 * floor.n_modes))
     on_floor = floor.on_floor(first, first + n_steps + 1)
     load = floor.loads(first, first + n_steps + 1, on_floor)
-    maps = _floor_maps(floor, load, powers, first, none, on_floor=on_floor)
+    (points,) = floor.kept.of((first, n_steps), lambda: (_points_by_forces(powers, load),))
+    maps = _floor_maps(floor, load, powers, first, (none, points), on_floor=on_floor)
     return Block(n_steps=n_steps, contact=None, floor=maps)
 
 
@@ -178,21 +187,23 @@ def _floor_maps(
     load: Array,
     powers: FloorPowers,
     first: int,
-    contact_rows: Array,
+    rows: tuple[Array, Array],
     *,
     on_floor: Array,
 ) -> FloorMaps:
     """Return how points and state follow from the state before and all forces.
 
-    `load` holds the modal loads of the contacts that stand on the floor.
+    `load` holds the modal loads of the contacts that stand on the floor; `rows` their rows on its
+    state, and those of the points on their forces.
     """
+    contact_rows, points = rows
     n_steps, size, n, kind = len(load) - 1, 2 * load.shape[2], floor.n_contacts, floor.dtype
     standing = (np.arange(n_steps + 1)[:, None] * n + on_floor).ravel()
     gains = powers.gains(first, n_steps)
     state_by_forces = -gains[:, None] * load[:, :, None]  # (steps + 1, c, 2, modes)
     point_rows = powers.points_by_state(first, n_steps)
     points_by_forces = np.zeros((len(point_rows), (n_steps + 1) * n))
-    points_by_forces[:, standing] = _points_by_forces(powers, load)
+    points_by_forces[:, standing] = points
     advance = powers.advance(first, n_steps)
     return FloorMaps(
         contact_rows=contact_rows.astype(kind, copy=False),

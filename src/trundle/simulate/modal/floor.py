@@ -11,6 +11,8 @@ from jaxtyping import Float, Int
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import ModalRecursion, Modes
 from trundle.route import ContactRows
+from trundle.simulate.modal.kept_maps import KeptMaps
+from trundle.simulate.modal.powers import FloorPowers
 from trundle.simulate.modal.residual import StaticFlexibility, residual_block
 from trundle.simulate.wheels.standing import StandingWheels
 
@@ -33,7 +35,7 @@ class ModalFloor:
 
     Steps are those of the record; wheels, where they are and how much of their force the model
     carries come from the rows of the contact operator. `dtype` is that of the state that is carried
-    over the steps, and of the large maps that carry it.
+    over the steps, and of the large maps that carry it. `kept` holds what drives share of blocks.
     """
 
     def __init__(
@@ -56,6 +58,7 @@ class ModalFloor:
         self._used = standing.used_dofs()
         self.route_shapes = np.ascontiguousarray(modes.at(self._used))
         self._chunks: dict[int, _Under] = {}
+        self.kept, self._powers = KeptMaps(), dict[int, FloorPowers]()
         self._residual = None if flexibility is None else _Residual(standing, modes, flexibility)
 
     def for_one_drive(self) -> ModalFloor:
@@ -67,6 +70,7 @@ class ModalFloor:
     def with_first(self, n_modes: int) -> ModalFloor:
         """Return the floor in its first modes; the others answer statically if any do."""
         fewer = self.for_one_drive()
+        fewer.kept, fewer._powers = KeptMaps(), {}
         fewer.n_modes, fewer.propagator = n_modes, self.propagator.part(slice(n_modes))
         fewer.points = np.ascontiguousarray(self.points[:, :n_modes])
         fewer._square = self._square[:n_modes]
@@ -76,6 +80,15 @@ class ModalFloor:
                 self.route_shapes[:, n_modes:] / np.sqrt(self._square[n_modes:])
             )
         return fewer
+
+    def powers(self, n_steps: int) -> FloorPowers:
+        """Return the floor's powers over blocks of so many steps, the same for every drive."""
+        if n_steps not in self._powers:
+            single = self.dtype == np.float32
+            self._powers[n_steps] = FloorPowers(
+                self.propagator, self.points, n_steps, single=single
+            )
+        return self._powers[n_steps]
 
     def count_below(self, f: float) -> int:
         """Return how many of the modes lie below a frequency [Hz]."""

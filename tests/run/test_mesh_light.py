@@ -96,7 +96,7 @@ def fails(*_):
 
 def test_a_coarse_mesh_that_cannot_be_made_is_told_and_leaves_what_is_computed(monkeypatch):
     """Elements twice as large may find no room: levels stand, and nobody has looked."""
-    monkeypatch.setattr("trundle.run.mesh_light._coarse", fails)
+    monkeypatch.setattr("trundle.run.mesh_light.few_runs", fails)
     found = tr.run_study(tr.study_from_text(BUILDING + CRITERIA))
     assert found.mesh is None
     assert len(found.cells) == 1

@@ -16,6 +16,7 @@ from trundle.cli.screen import progress_bar
 from trundle.cli.show import Show, say_json, warn
 from trundle.report import unused_numbers
 from trundle.results.mesh_change import mesh_words
+from trundle.results.parts_change import parts_words
 from trundle.results.results_folder import check_target
 from trundle.run.estimate import estimate_of
 from trundle.study.doubts import study_doubts
@@ -55,6 +56,8 @@ def run(
         print_result(result)
         if result.mesh is not None:
             say(f"mesh: {mesh_words(result.mesh)}")
+        if result.parts is not None:
+            say(f"parts: {parts_words(result.parts)}")
     for method, found in result.warnings().items() if show != "json" else ():
         for warning in found:
             if warning not in told:

@@ -23,10 +23,12 @@ from trundle.results.cells import Cell, CellKey, DayKey, History
 from trundle.results.field_kinds import fields_hold
 from trundle.results.kept import read_kept, write_kept
 from trundle.results.kept_index import KeptIndex
+from trundle.results.level_change import LevelChange
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.mesh_change import MeshChange
 from trundle.results.modes import FirstModes
 from trundle.results.parts import ChangesPart, DayPart, ExactPart, MapPart, RunsPart
+from trundle.results.parts_change import PartsChange
 from trundle.simulate import Coverage, TruncationChange
 from trundle.traffic import Day, Loudest, Meeting
 
@@ -37,8 +39,8 @@ _CLASSES: Mapping[str, Callable[..., Any]] = {
     for kind in (
         BandOutcomes, BandSpectra, Cell, CellKey, ChangesPart, ClassMap, Coverage, Criterion, Day,
         DayKey, DayPart, ExactPart, ExactStatistics, FirstModes, FitnessWarning, History, KeptIndex,
-        LargestValues, Loudest, MapKey, MapPart, Meeting, MeshChange, RunLevels, RunsPart, StudyMap,
-        TruncationChange, Verdict,
+        LargestValues, LevelChange, Loudest, MapKey, MapPart, Meeting, MeshChange, PartsChange,
+        RunLevels, RunsPart, StudyMap, TruncationChange, Verdict,
     )
 }  # fmt: skip
 _PLAIN = (str, bool, int, float, type(None))

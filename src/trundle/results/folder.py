@@ -68,6 +68,7 @@ def keep_result(result: StudyResult, folder: Path) -> None:
         days=len(result.days),
         modes=result.modes,
         mesh=result.mesh,
+        parts=result.parts,
         provenance=result.provenance,
     )
     keep_value(kept / "index", index, _LABEL)
@@ -140,6 +141,7 @@ def read_result(folder: Path, index: KeptIndex, study: Study) -> StudyResult:
         days=dict(days),
         modes=index.modes,
         mesh=index.mesh,
+        parts=index.parts,
         provenance=index.provenance,
     )
 

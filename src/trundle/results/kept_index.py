@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from trundle.results.mesh_change import MeshChange
 from trundle.results.modes import FirstModes
+from trundle.results.parts_change import PartsChange
 
 __all__ = ["KeptIndex"]
 
@@ -31,6 +32,8 @@ class KeptIndex:
         What a coarser mesh changes, where that was looked at.
     provenance : mapping of str
         Where the results come from.
+    parts : PartsChange or None
+        What less of each part changes, where that was looked at.
     """
 
     source: str
@@ -42,3 +45,4 @@ class KeptIndex:
     modes: FirstModes | None
     mesh: MeshChange | None
     provenance: Mapping[str, str | int | Mapping[str, str]]
+    parts: PartsChange | None = None

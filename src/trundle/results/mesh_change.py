@@ -9,7 +9,7 @@ from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.errors import FitnessWarning
-from trundle.signals import nominal_frequency
+from trundle.results.level_change import level_shares, worst_words
 
 __all__ = ["MeshChange", "mesh_warnings", "mesh_words"]
 
@@ -55,12 +55,7 @@ class MeshChange:
 
         NaN stands where nothing moves, and where no level is known.
         """
-        coarse, fine = self.levels
-        loudest = np.fmax.reduce(fine, axis=2, keepdims=True)
-        matters = fine > 0.1 * loudest  # what is a tenth of the loudest decides nothing
-        share = np.full(fine.shape, np.nan)
-        np.divide(coarse, fine, out=share, where=matters)
-        return np.abs(share - 1.0)
+        return level_shares(self.levels)
 
 
 def mesh_words(change: MeshChange) -> str:
@@ -71,15 +66,9 @@ def mesh_words(change: MeshChange) -> str:
         f"from elements of {coarse:g} m to {fine:g} m the first {change.frequencies.shape[1]} "
         f"frequencies change by up to {100.0 * change.frequency_change:.2g} %"
     )
-    if np.isfinite(levels).any():
-        case, point, band = np.unravel_index(np.nanargmax(levels), levels.shape)
-        f = nominal_frequency(float(change.bands[band]))
-        text += (
-            f", and band levels by up to {100.0 * np.nanmax(levels):.2g} % "
-            f"({change.cases[case]}, {change.points[point]}, {f:g} Hz)"
-        )
-    else:
-        text += "; no band level is known on both, so that none was compared"
+    worst = worst_words(levels, change.cases, change.points, change.bands)
+    nothing = "; no band level is known on both, so that none was compared"
+    text += f", and {worst}" if worst else nothing
     return f"{text}; as much again may be left"
 
 

@@ -16,6 +16,7 @@ from trundle.results.cells import Cell, CellKey, DayKey
 from trundle.results.maps import MapKey, StudyMap
 from trundle.results.mesh_change import MeshChange, mesh_warnings
 from trundle.results.modes import FirstModes
+from trundle.results.parts_change import PartsChange, parts_warnings
 from trundle.simulate import Source
 from trundle.study.assumptions import assumption_warnings, early_end_warnings
 from trundle.study.doubts import study_doubts
@@ -51,6 +52,8 @@ class StudyResult:
         What a mesh twice as coarse changes, where that was looked at: of buildings.
     provenance : mapping of str
         Where the result comes from: versions, hashes, seed.
+    parts : PartsChange or None
+        What less of each part changes, where that was looked at: of structures cut into parts.
     """
 
     study: Study
@@ -61,6 +64,7 @@ class StudyResult:
     modes: FirstModes | None
     mesh: MeshChange | None
     provenance: Mapping[str, Any]
+    parts: PartsChange | None = None
 
     def __repr__(self) -> str:
         """Say in a line what came out."""
@@ -112,6 +116,7 @@ class StudyResult:
                 *assumption_warnings(self.study),
                 *study_doubts(self.study),
                 *(() if self.study.building is None else mesh_warnings(self.mesh)),
+                *(() if self.study.parting is None else parts_warnings(self.parts)),
                 *(w for case in self.study.cases for w in early_end_warnings(self.study, case)),
             )
             by_method[assessment.method].update(dict.fromkeys(doubts))

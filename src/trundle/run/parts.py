@@ -28,7 +28,7 @@ from trundle.run.executor import Executor, Work
 from trundle.run.kept_parts import keep_part, kept_part
 from trundle.run.threads import Threads
 from trundle.structure import Structure
-from trundle.structure.superelements import PartedStructure, Sorted
+from trundle.structure.superelements import PartedStructure, Sorted, reduced_here
 
 __all__ = ["IntervalTask", "ReductionTask", "modes_by_parts", "with_kept_parts"]
 
@@ -92,8 +92,8 @@ def with_kept_parts(structure: Structure, executor: Executor | None = None) -> S
     executor : Executor, optional
         Who reduces; threads of this process unless given.
     """
-    if not isinstance(structure, PartedStructure):
-        return structure
+    if not isinstance(structure, PartedStructure) or structure.reducer is not reduced_here:
+        return structure  # not cut, or somebody reduces it already
 
     def reduce(pieces: Sorted, f_max: float, tell: Tell) -> tuple[Superelement, ...]:
         """Reduce all distinct parts."""

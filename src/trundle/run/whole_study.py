@@ -27,6 +27,7 @@ from trundle.run.memory import give_back
 from trundle.run.mesh_light import mesh_change
 from trundle.run.mode_cache import modes_of
 from trundle.run.parts import with_kept_parts
+from trundle.run.parts_light import parts_change
 from trundle.run.progress import Bar
 from trundle.run.tasks import tasks_of
 from trundle.run.threads import Threads
@@ -86,7 +87,11 @@ def run_study(
         ]
         carry_out(batches, who, store, Bar(tell, share, costs))
     result = _result(study, jobs, store, modes)
-    result = replace(result, mesh=mesh_change(study, result.cells, modes, _run, tell))
+    result = replace(
+        result,
+        mesh=mesh_change(study, result.cells, modes, _run, tell),
+        parts=parts_change(study, floor, result.cells, modes, run=_run, tell=tell),
+    )
     tell("done", 1.0)
     return result
 

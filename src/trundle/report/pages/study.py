@@ -25,6 +25,7 @@ from trundle.report.figures import (
 from trundle.report.html import Picture, embedded, template
 from trundle.report.interactive import plotly_script
 from trundle.results.mesh_change import mesh_words
+from trundle.results.parts_change import parts_words
 from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import Structure, self_weight_deflection
@@ -125,6 +126,7 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         together=together_lines(result),
         days=day_views(result),
         mesh="" if result.mesh is None else mesh_words(result.mesh),
+        parts="" if result.parts is None else parts_words(result.parts),
         warnings=result.warnings(),
         provenance=result.provenance,
         frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],

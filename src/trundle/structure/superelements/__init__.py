@@ -3,7 +3,16 @@
 from trundle.structure.superelements.assembly import Joined
 from trundle.structure.superelements.cuts import Cuts
 from trundle.structure.superelements.pencil import ReducedPencil
-from trundle.structure.superelements.reduction import Part, Sorted
+from trundle.structure.superelements.reduction import Part, Sorted, reduced_here
 from trundle.structure.superelements.whole import PartedStructure, Parting
 
-__all__ = ["Cuts", "Joined", "Part", "PartedStructure", "Parting", "ReducedPencil", "Sorted"]
+__all__ = [
+    "Cuts",
+    "Joined",
+    "Part",
+    "PartedStructure",
+    "Parting",
+    "ReducedPencil",
+    "Sorted",
+    "reduced_here",
+]

@@ -7,12 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
+import numpy as np
 from jaxtyping import Float, Int
 
 from trundle._checks import positive, set_frozen
 from trundle._progress import Progress, Tell, silent
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import Factor, Modes, modes_by_shifts
+from trundle.dynamics import Factor, Modes, Superelement, modes_by_shifts
 from trundle.errors import InputError
 from trundle.structure.elements import Elements
 from trundle.structure.floor import Floor
@@ -214,6 +215,27 @@ class PartedStructure:
             tell=tell,
         )
 
+    def narrower(self, factor: float, *, least: float) -> PartedStructure:
+        """Return the same with its parts and seams kept to so many times less.
+
+        Nothing is solved for again: own modes of the parts that were reduced are left out, of each
+        the two highest at least, for of a small part none may lie between both frequencies; but
+        none below `least` [Hz].
+        """
+        parting = replace(
+            self.parting,
+            f_parts=self.parting.f_parts / factor,
+            f_seams=self.parting.f_seams / factor,
+        )
+        wide = self.joined.parts
+
+        def fewer(_: Sorted, f_parts: float, tell: Tell) -> list[Superelement]:
+            """Leave out own modes of what is reduced."""
+            tell("parts kept to less", 0.0)
+            return [part.below(max(least, min(f_parts, _highest_but_two(part)))) for part in wide]
+
+        return replace(self, parting=parting, reducer=fewer)
+
     def check_reach(self, f_max: float) -> None:
         """Refuse to look for modes so high [Hz] that parts are not kept far enough for them."""
         if f_max > self.parting.f_parts / _LEAST:
@@ -248,6 +270,11 @@ class PartedStructure:
             progress=lambda share: told(_REDUCED + (1.0 - _REDUCED) * share),
         )
         return replace(modes, basis=joined)
+
+
+def _highest_but_two(part: Superelement) -> float:
+    """Return a frequency below which all own modes lie but the two highest [Hz]."""
+    return float(part.omega[-2]) / (2.0 * np.pi) if len(part.omega) > 1 else 0.0
 
 
 def _nobody(share: float) -> None:

@@ -12,6 +12,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from trundle._progress import Progress, Tell
 from trundle.dynamics import (
     Interval,
@@ -25,12 +27,15 @@ from trundle.dynamics import (
     together,
 )
 from trundle.run.executor import Executor, Work
+from trundle.run.jobs import Job
 from trundle.run.kept_parts import keep_part, kept_part
 from trundle.run.threads import Threads
+from trundle.simulate.laying_out import point_rows, spot_rows
+from trundle.simulate.wheels.standing import route_dofs
 from trundle.structure import Structure
 from trundle.structure.superelements import PartedStructure, Sorted, reduced_here
 
-__all__ = ["IntervalTask", "ReductionTask", "modes_by_parts", "with_kept_parts"]
+__all__ = ["IntervalTask", "ReductionTask", "modes_by_parts", "near_to_jobs", "with_kept_parts"]
 
 _TOGETHER = 900  # modes of a part of the spectrum
 _REDUCED, _COUNTED = 0.3, 0.35  # of the whole, what is done by then, for progress
@@ -100,6 +105,29 @@ def with_kept_parts(structure: Structure, executor: Executor | None = None) -> S
         return _reduced(pieces, f_max, executor, tell)
 
     return replace(structure, reducer=reduce)
+
+
+def near_to_jobs(structure: Structure, jobs: Sequence[Job]) -> Structure:
+    """Return a structure of which parts far from all that jobs drive over and read keep less.
+
+    Parameters
+    ----------
+    structure : Structure
+        Any; one that is not cut into parts, or all of whose parts are kept alike, is given back.
+    jobs : sequence of Job
+        What is computed on it.
+    """
+    if not isinstance(structure, PartedStructure) or structure.parting.near is None:
+        return structure
+    if structure.nearness is not None:
+        return structure  # what it is near to is known
+    sources = {source.name: source for job in jobs for source in job.sources}
+    found = [route_dofs(structure, tuple(sources.values()))]
+    for job in jobs:
+        found.append(np.unique(point_rows(structure, job.points).indices))
+        if job.map is not None:
+            found += [np.unique(spot_rows(structure, spots).indices) for spots in job.map.places]
+    return structure.near_to(np.unique(np.concatenate(found)))
 
 
 def modes_by_parts(

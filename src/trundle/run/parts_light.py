@@ -34,7 +34,7 @@ def parts_change(
     """Return what keeping less of each part changes.
 
     None for a structure that is not cut into parts, for studies that assess nothing, and where so
-    little is kept already that less would not do.
+    little is kept already that less would not do, or nothing can be left out of some part.
 
     Parameters
     ----------
@@ -59,7 +59,9 @@ def parts_change(
     factor = min(_FACTOR, own / (_REACH * modes.f_max))
     if factor < 0.5 * (1.0 + _FACTOR):
         return None
-    narrow = floor.narrower(factor, least=_REACH * modes.f_max)
+    narrow = floor.narrower(factor, least=modes.f_max)
+    if not narrow.less_than(floor):
+        return None
     few = replace(few_runs(study, study.assessment.method), floor=narrow, parting=None)
     try:
         found = run(few, lambda what, done: tell(f"parts kept to less: {what}", done))

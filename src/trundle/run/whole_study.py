@@ -26,7 +26,7 @@ from trundle.run.jobs import Job, plan_jobs, prepare_job
 from trundle.run.memory import give_back
 from trundle.run.mesh_light import mesh_change
 from trundle.run.mode_cache import modes_of
-from trundle.run.parts import with_kept_parts
+from trundle.run.parts import near_to_jobs, with_kept_parts
 from trundle.run.parts_light import parts_change
 from trundle.run.progress import Bar
 from trundle.run.tasks import tasks_of
@@ -72,7 +72,7 @@ def run_study(
     costs = {t.name: t.seconds(size_of(study, job)) for job in jobs for t in tasks_of(job)}
     share = of_modes / (of_modes + sum(costs.values()))
     with nullcontext(executor) if executor is not None else Threads() as who:
-        floor = with_kept_parts(study.floor, who)
+        floor = near_to_jobs(with_kept_parts(study.floor, who), jobs)
         modes = _all_modes(study, floor, who, lambda what, done: tell(what, share * done))
         floors = Floors(floor, modes, jobs)
         batches = [

@@ -52,6 +52,8 @@ class Joined:
         How many seams there are, and how many of them are written by shapes of their own.
     f_parts, f_seams : float
         Own modes of parts, and of long seams, are kept to these frequencies [Hz].
+    n_far : int
+        How many pieces are kept to less, for they lie far from all that matters.
     """
 
     resting: tuple[RestingPart, ...]
@@ -63,6 +65,7 @@ class Joined:
     n_long: int
     f_parts: float
     f_seams: float
+    n_far: int = 0
 
     @property
     def parts(self) -> tuple[Superelement, ...]:
@@ -73,6 +76,8 @@ class Joined:
     def told(self) -> str:
         """What a result must say of modes that are found by parts."""
         seams = f", and of {self.n_long} seams to {self.f_seams:g} Hz" if self.n_long else ""
+        if self.n_far:
+            seams += f" ({self.n_far} parts far from routes and points to less)"
         return (
             f"modes are found by {len(self.placed)} parts, {len(self.resting)} of them distinct, "
             f"whose own modes are kept to {self.f_parts:g} Hz{seams}: frequencies are a little too "
@@ -161,6 +166,7 @@ def join(
     *,
     n_dofs: int,
     f_seams: float,
+    shares: Float[Array, " pieces"],
     tell: Callable[[float], None],
 ) -> Joined:
     """Join reduced parts at their seams.
@@ -175,6 +181,8 @@ def join(
         Number of free dofs of the structure.
     f_seams : float
         Own modes of long seams below are kept [Hz].
+    shares : ndarray of float, shape (n_pieces,)
+        Share of its part's band to which each piece is kept; a seam, that of the nearer one.
     tell : callable
         Told the share done.
     """
@@ -187,9 +195,10 @@ def join(
     written: list[WrittenSeam] = []
     count = len(kept)
     for done, seam in enumerate(long):
-        key = _seam_key(seam, ends_of(seam, short), parts, placed, boundaries)
+        most = float(shares[list(seam.pieces)].max())
+        key = (most, *_seam_key(seam, ends_of(seam, short), parts, placed, boundaries))
         if key not in known:
-            known[key] = seam_shapes(seam, short, parts, placed, boundaries, f_max=f_seams)
+            known[key] = seam_shapes(seam, short, parts, placed, boundaries, f_max=most * f_seams)
         shapes = replace(known[key], ends=ends_of(seam, short))
         written.append(WrittenSeam(seam=seam, shapes=shapes, key=key, first=count))
         count += shapes.own.shape[1]
@@ -199,13 +208,14 @@ def join(
     return Joined(
         resting=tuple(resting),
         placed=tuple(placed),
-        pencil=_pencil(parts, placed, bases, count),
+        pencil=_pencil(parts, placed, bases, shares, n_seams=count),
         bases=bases,
         n_dofs=n_dofs,
         n_seams=len(seams),
         n_long=len(long),
         f_parts=min(part.f_max for part in parts),
         f_seams=f_seams,
+        n_far=int(np.count_nonzero(shares < 1.0)),
     )
 
 
@@ -243,18 +253,21 @@ def _pencil(
     parts: Sequence[Superelement],
     placed: Sequence[Placed],
     bases: Sequence[PieceBasis],
+    shares: Float[Array, " pieces"],
+    *,
     n_seams: int,
 ) -> ReducedPencil:
     """Return the reduced matrices; pieces of one kind with equal seams are formed once."""
     numbers: dict[tuple[object, ...], int] = {}
     kinds: list[ReducedPiece] = []
     pieces, first = [], 0
-    for own, basis in zip(placed, bases, strict=True):
+    for own, basis, share in zip(placed, bases, shares.tolist(), strict=True):
         part = parts[own.kind]
-        if basis.key not in numbers:
-            numbers[basis.key] = len(kinds)
+        part, key = part.below(share * part.f_max), (share, basis.key)
+        if key not in numbers:
+            numbers[key] = len(kinds)
             kinds.append(_reduced(part, basis.shapes))
-        pieces.append(PieceCoordinates(kind=numbers[basis.key], first=first, seams=basis.seams))
+        pieces.append(PieceCoordinates(kind=numbers[key], first=first, seams=basis.seams))
         first += len(part.omega)
     return ReducedPencil(kinds=tuple(kinds), pieces=tuple(pieces), n_seams=n_seams)
 

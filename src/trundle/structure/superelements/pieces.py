@@ -20,7 +20,7 @@ from trundle.structure.elements.protocol import GROUND
 from trundle.structure.floor import Floor
 from trundle.structure.superelements.cuts import Share
 
-__all__ = ["Alike", "Piece", "like", "pieces_of"]
+__all__ = ["Alike", "Piece", "like", "pieces_of", "places_of"]
 
 _SAME_PLACE = 1e-5  # m, between nodes of pieces that are alike
 _SAME = 1e-8  # between entries of their matrices, against the roots of both diagonals
@@ -100,7 +100,7 @@ def pieces_of(
     motion = _motion(floor, nodes)
     dofs = np.unique(motion.indices)
     motion = motion[:, dofs]
-    where, kinds = _identity(floor)
+    where, kinds = places_of(floor)
     m, k = ((motion.T @ matrix @ motion).tocsc() for matrix in matrices)
     return Piece(dofs=dofs, places=where[dofs], kinds=kinds[dofs], mass=m, stiffness=k)
 
@@ -145,7 +145,7 @@ def _motion(floor: Floor, nodes: Array) -> SparseMatrix:
     return sparse.csr_array(entries, shape=(len(columns), floor.n_dofs))
 
 
-def _identity(floor: Floor) -> tuple[Array, Array]:
+def places_of(floor: Floor) -> tuple[Array, Array]:
     """Return the place of each free dof's node [m], and which of its six dofs it is."""
     node, kind = np.nonzero(floor.dof_index >= 0)  # row by row: as the dofs are numbered
     return floor.nodes[node], kind

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from jaxtyping import Int
+from jaxtyping import Float, Int
 from scipy import sparse
 
 from trundle._progress import Progress, Tell, silent
@@ -19,7 +19,8 @@ from trundle.structure.elements.protocol import Elements
 from trundle.structure.floor import Floor
 from trundle.structure.superelements.assembly import Joined, join
 from trundle.structure.superelements.cuts import Share
-from trundle.structure.superelements.pieces import Alike, Piece, like, pieces_of
+from trundle.structure.superelements.nearness import Nearness
+from trundle.structure.superelements.pieces import Alike, Piece, like, pieces_of, places_of
 from trundle.structure.superelements.seams import Placed
 
 __all__ = ["Part", "Reducer", "Sorted", "joined_parts", "reduced_here", "sorted_pieces"]
@@ -37,11 +38,14 @@ class Sorted:
         Rows of each at which any of its copies meets others, rising.
     placed : tuple of Placed
         All pieces.
+    where : ndarray of float, shape (n_dofs, 3)
+        Place of each free dof's node [m].
     """
 
     distinct: tuple[Piece, ...]
     boundaries: tuple[Array, ...]
     placed: tuple[Placed, ...]
+    where: Float[Array, "dofs 3"]
 
     def part(self, number: int) -> Part:
         """Return what a reduction needs of one of the distinct ones."""
@@ -116,6 +120,7 @@ def sorted_pieces(floor: Floor, shares: Sequence[Share], *, tell: Tell = silent)
         distinct=tuple(distinct),
         boundaries=tuple(np.flatnonzero(rows) for rows in shared),
         placed=tuple(placed),
+        where=places_of(floor)[0],
     )
 
 
@@ -170,6 +175,7 @@ def joined_parts(
     *,
     n_dofs: int,
     f_seams: float,
+    nearness: Nearness | None = None,
     tell: Tell = silent,
 ) -> Joined:
     """Join pieces of which the distinct ones are reduced.
@@ -184,9 +190,14 @@ def joined_parts(
         Number of free dofs of the structure.
     f_seams : float
         Own modes of long seams below are kept [Hz].
+    nearness : Nearness, optional
+        What pieces are near to; those far from it are kept to less.
     tell : callable
         Told what is being done, and the share done.
     """
+    shares = np.ones(len(pieces.placed))
+    if nearness is not None:
+        shares = nearness.shares([pieces.where[own.dofs] for own in pieces.placed])
     return join(
         [
             RestingPart(reduced=part, stiffness=piece.stiffness)
@@ -195,5 +206,6 @@ def joined_parts(
         pieces.placed,
         n_dofs=n_dofs,
         f_seams=f_seams,
+        shares=shares,
         tell=lambda share: tell("seams between parts", share),
     )

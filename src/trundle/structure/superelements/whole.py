@@ -21,6 +21,7 @@ from trundle.structure.model import MirrorPlane
 from trundle.structure.superelements.assembly import Joined
 from trundle.structure.superelements.cuts import Cuts, Share, shares_in_halves, shares_of
 from trundle.structure.superelements.flexibility import PartedFlexibility
+from trundle.structure.superelements.nearness import Nearness
 from trundle.structure.superelements.reduction import (
     Reducer,
     Sorted,
@@ -52,6 +53,9 @@ class Parting:
         wanted, or more.
     f_seams : float
         Own modes of long seams between parts are kept below this one [Hz]: five times, or more.
+    near : float, optional
+        Parts farther than this from routes and points are kept to less [m], the farther the less
+        (`Nearness`).
 
     Raises
     ------
@@ -63,6 +67,7 @@ class Parting:
     largest: int = 0
     f_parts: float
     f_seams: float
+    near: float | None = None
 
     def __post_init__(self) -> None:
         """Check frequencies, and that something is cut."""
@@ -99,6 +104,8 @@ class PartedStructure:
         How it is cut.
     reducer : Reducer
         Who reduces the distinct parts; this process, one after the other, unless given.
+    nearness : Nearness, optional
+        What parts are near to; all are kept alike unless given.
 
     Notes
     -----
@@ -110,6 +117,7 @@ class PartedStructure:
     whole: Floor
     parting: Parting
     reducer: Reducer = reduced_here
+    nearness: Nearness | None = None
 
     @property
     def name(self) -> str:
@@ -188,6 +196,8 @@ class PartedStructure:
         digest.update(repr((parting.largest, parting.f_parts, parting.f_seams)).encode())
         for at in (parting.cuts.x, parting.cuts.y, parting.cuts.z):
             digest.update(at.tobytes() + b"|")
+        if self.nearness is not None:
+            digest.update(repr(self.nearness.near).encode() + self.nearness.places.tobytes())
         return digest.hexdigest()[:16]
 
     @cached_property
@@ -212,6 +222,7 @@ class PartedStructure:
             self.reducer(self.pieces, self.parting.f_parts, tell),
             n_dofs=self.n_dofs,
             f_seams=self.parting.f_seams,
+            nearness=self.nearness,
             tell=tell,
         )
 
@@ -234,7 +245,28 @@ class PartedStructure:
             tell("parts kept to less", 0.0)
             return [part.below(max(least, min(f_parts, _highest_but_two(part)))) for part in wide]
 
-        return replace(self, parting=parting, reducer=fewer)
+        near = self.nearness
+        if near is not None:
+            near = replace(near, near=near.near / factor)
+        return replace(self, parting=parting, reducer=fewer, nearness=near)
+
+    def near_to(self, dofs: Int[Array, " dofs"]) -> PartedStructure:
+        """Return the same, of which parts far from some free dofs are kept to less.
+
+        Nothing changes where the parting says nothing of nearness.
+        """
+        if self.parting.near is None:
+            return self
+        places = np.unique(self.pieces.where[dofs], axis=0)
+        near = Nearness(places=places, near=self.parting.near)
+        nearer = replace(self, nearness=near)
+        nearer.__dict__["pieces"] = self.pieces
+        return nearer
+
+    def less_than(self, other: PartedStructure) -> bool:
+        """Return whether less is kept of every part than in another of equal parts."""
+        both = zip(self.joined.parts, other.joined.parts, strict=True)
+        return all(len(mine.omega) < len(theirs.omega) for mine, theirs in both)
 
     def check_reach(self, f_max: float) -> None:
         """Refuse to look for modes so high [Hz] that parts are not kept far enough for them."""

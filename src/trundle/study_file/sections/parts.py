@@ -15,7 +15,7 @@ from trundle.errors import Problem
 from trundle.structure.floor import Floor
 from trundle.structure.superelements import Cuts, Parting
 from trundle.study_file.draft import Draft
-from trundle.study_file.fields import Flag, Length, Number, Section, Whole
+from trundle.study_file.fields import Flag, Length, Number, PositiveLength, Section, Whole
 from trundle.study_file.kinds import SectionKind
 
 __all__ = ["PARTS", "build", "fields"]
@@ -33,6 +33,7 @@ class PartsSection(Section):
     nodes: Annotated[Whole, Field(ge=100, le=1_000_000)] | None = None
     band: _BAND = 2.0
     seam_band: _BAND = 5.0
+    near: PositiveLength | None = None
 
 
 PARTS = SectionKind(name="parts", schema=PartsSection, form="table")
@@ -54,6 +55,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         largest=section.nodes or 0,
         f_parts=section.band * highest,
         f_seams=max(section.seam_band, section.band) * highest,
+        near=section.near,
     )
     model = draft.model
     if isinstance(model, Floor):

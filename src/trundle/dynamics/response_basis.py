@@ -29,6 +29,7 @@ from jaxtyping import Float
 from scipy import linalg
 
 from trundle._typing import Array
+from trundle.dynamics.same_bits import repeatable
 
 __all__ = ["ResponseBasis", "response_basis"]
 
@@ -88,7 +89,15 @@ def response_basis(
     tolerance : float
         Error that is allowed, see `ResponseBasis`.
     """
-    lines = _lines(omega, ratios, f_max)
+    with repeatable():
+        return _searched(omega, ratios, route, points, (_lines(omega, ratios, f_max), tolerance))
+
+
+def _searched(
+    omega: Array, ratios: Array, route: Array, points: Array, wanted: tuple[Array, float]
+) -> ResponseBasis | None:
+    """Return the smallest basis that does, by halving; `wanted` is where, and within what error."""
+    lines, tolerance = wanted
     h = _receptance(omega, ratios, lines)
     route, points = _of_rank(route), points[np.any(points != 0.0, axis=1)]
     gram = _gram(h, route) + _gram(h, points)

@@ -73,6 +73,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/building.py
 	$(BIN)/python benchmarks/day.py
 	$(BIN)/python benchmarks/parts.py
+	$(BIN)/python benchmarks/hundred_workers.py
 
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs

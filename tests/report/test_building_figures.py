@@ -9,6 +9,8 @@ from studies import BUILDING
 from trundle.report.figures import building as figures
 from trundle.report.figures import floor as floor_figures
 from trundle.results.modes import first_modes
+from trundle.structure import CONCRETE, ShellSection
+from trundle.structure.building import Brace, Building, Profile, Ramp, Storey
 from trundle.study.map_plan import MapGrid
 
 MAP = """
@@ -49,6 +51,28 @@ def test_a_plan_has_its_slab_with_the_opening_cut_out(study):
 def _area(ring):
     x, y = np.asarray(ring)[:-1].T
     return 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
+
+
+def test_a_post_that_stands_on_a_ramp_ends_at_its_slope():
+    """Of a ramp from 0 to 4 m over 8 m, 2 m up halfway and 3 m three quarters up."""
+    plate = ShellSection(thickness=0.2, material=CONCRETE)
+    ramp = Ramp(
+        name="ramp",
+        section=plate,
+        outline=np.array([[0.0, 0.0], [0.0, 3.0], [8.0, 3.0], [8.0, 0.0]]),
+        bottom="ground",
+        top="deck",
+    )
+    post = Profile.rectangle(0.3, 0.3, CONCRETE)
+    ends = np.array([[4.0, 1.0], [6.0, 1.0]])
+    building = Building(
+        storeys=(Storey(name="ground", level=0.0), Storey(name="deck", level=4.0)),
+        ramps=(ramp,),
+        braces=(Brace(profile=post, ends=ends, on=("ramp", "ramp")),),
+    )
+    along_y, _ = figures.elevation_figure(building).axes
+    lines = [line.get_ydata() for line in along_y.lines if len(line.get_xdata()) == 2]
+    assert any(np.allclose(z, [2.0, 3.0]) for z in lines)
 
 
 def test_columns_walls_and_beams_are_drawn_to_scale(study):

@@ -9,6 +9,7 @@ import trundle as tr
 from studies import BUILDING
 from trundle.errors import InputError
 from trundle.results.mesh_change import MeshChange, mesh_warnings, mesh_words
+from trundle.run.tasks import ExactTask
 
 CRITERIA = '\n[criteria]\nmethod = "coupled"\ncurves = ["VC-A"]\n'
 
@@ -31,6 +32,20 @@ def test_the_coarse_mesh_is_twice_the_studys_and_both_are_its_levels(result):
     own = np.sqrt(np.mean(other.spectra.values[:2, 0] ** 2, axis=0))
     np.testing.assert_allclose(change.levels[0, 0, 0, there], own[there], rtol=1e-9)
     np.testing.assert_allclose(change.frequencies[0], coarse.modes.frequencies[:8], rtol=1e-9)
+
+
+def test_exact_statistics_are_for_the_studys_own_mesh_alone(monkeypatch):
+    """They take most of the time of a few runs, and only levels of runs are compared."""
+    asked = []
+    compute = ExactTask.compute
+    monkeypatch.setattr(
+        ExactTask, "compute", lambda task, *rest: asked.append(task.name) or compute(task, *rest)
+    )
+    found = tr.run_study(tr.study_from_text(BUILDING + CRITERIA))
+    assert found.mesh is not None
+    (cell,) = found.cells.values()
+    assert cell.exact is not None
+    assert len(asked) == 1
 
 
 def test_what_a_coarser_mesh_changes_stands_in_the_report_and_is_read_back(result, tmp_path):

@@ -38,9 +38,10 @@ def estimate_of_changes(
     size = max((size_of(study, one.job) for one in planned), key=lambda size: size.n_modes)
     of_runs = sum(job_seconds(one.job, size) for one in planned)
     n_slabs = len({change.slab_thickness for change in changes})
-    of_modes = n_slabs * mode_seconds(size.n_dofs, size.n_modes)
+    parted = study.parting is not None
+    of_modes = n_slabs * mode_seconds(size.n_dofs, size.n_modes, parted=parted)
     return Estimate(
         seconds=START + of_modes + of_runs,
-        memory=peak_memory([one.job for one in planned], size.n_dofs, size.n_modes),
+        memory=peak_memory([one.job for one in planned], size.n_dofs, size.n_modes, parted=parted),
         slowest="modes of the floors" if of_modes > of_runs else "their runs",
     )

@@ -165,7 +165,8 @@ def _bar(study: Study, planned: Sequence[Combination], tell: Tell) -> Bar:
     costs: dict[str, float] = {}
     for one in planned:
         size = size_of(study, one.job)
-        costs[_name(one.slab_thickness)] = mode_seconds(size.n_dofs, size.n_modes) + 1e-3
+        of_modes = mode_seconds(size.n_dofs, size.n_modes, parted=study.parting is not None)
+        costs[_name(one.slab_thickness)] = of_modes + 1e-3
         costs |= {task.name: task.seconds(size) for task in one.tasks(study)}
     return Bar(tell, 0.0, costs)
 

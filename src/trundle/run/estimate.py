@@ -32,6 +32,7 @@ __all__ = [
 ]
 
 _MODES = 8e-7  # s for each degree of freedom and mode
+_PARTED_MODES = 2e-7  # s for each degree of freedom and mode that is found by parts
 _LAY_OUT = 5e-5  # s for each degree of freedom, for each job
 _FIGURES = 0.6  # s for each cell's figures and tables
 
@@ -44,6 +45,7 @@ _BATCH = 0.4e9  # of the histories of a batch, at most
 _USUAL_MODES = 600.0  # below 100 Hz, of a model whose slab is not known
 _AT_ONCE = 2  # batches in work
 _FACTOR = 8.0 * 60.0  # bytes of a factor for each degree of freedom and doubling of them
+_PARTED = 7e3  # bytes for each degree of freedom of a structure by parts: how they follow seams
 _MAP = 2.2e9  # of spectra and responses of a map, at most
 
 
@@ -88,7 +90,7 @@ def estimate_of(study: Study) -> Estimate:
     cells = len(study.cases) * len(study.roads) * len(study.methods)
     return Estimate(
         seconds=START + _FIGURES * cells + sum(spent.values()),
-        memory=peak_memory(jobs, n_dofs, most),
+        memory=peak_memory(jobs, n_dofs, most, parted=study.parting is not None),
         slowest=max(spent, key=lambda name: spent[name]),
     )
 
@@ -103,9 +105,9 @@ def job_seconds(job: Job, size: Size) -> float:
     return sum(task.seconds(size) for task in tasks_of(job)) + _LAY_OUT * size.n_dofs
 
 
-def mode_seconds(n_dofs: int, n_modes: float) -> float:
-    """Return about how long so many modes of a floor take [s]."""
-    return _MODES * n_dofs * n_modes
+def mode_seconds(n_dofs: int, n_modes: float, *, parted: bool = False) -> float:
+    """Return about how long so many modes of a floor take, all at once or by its parts [s]."""
+    return (_PARTED_MODES if parted else _MODES) * n_dofs * n_modes
 
 
 def memory_there_is() -> float:
@@ -159,12 +161,13 @@ def seconds_of_modes(study: Study, jobs: Sequence[Job]) -> float:
     if f_max == 0.0 or has_modes(study.floor, f_max):
         return 0.0
     n_modes = max(n_modes_of(study, job) for job in jobs)
-    return mode_seconds(study.floor.n_dofs, n_modes)
+    return mode_seconds(study.floor.n_dofs, n_modes, parted=study.parting is not None)
 
 
-def peak_memory(jobs: Sequence[Job], n_dofs: int, n_modes: float) -> float:
+def peak_memory(jobs: Sequence[Job], n_dofs: int, n_modes: float, *, parted: bool = False) -> float:
     """Return about how much memory is held at the peak [bytes]."""
-    floor = 2.5 * 8.0 * n_dofs * n_modes + _FACTOR * n_dofs * np.log2(n_dofs)
+    whole = 2.5 * 8.0 * n_dofs * n_modes + _FACTOR * n_dofs * np.log2(n_dofs)
+    floor = _PARTED * n_dofs if parted else whole
     return _BARE + floor + max((_memory_of(job) for job in jobs), default=0.0)
 
 

@@ -14,7 +14,18 @@ from trundle.errors import InputError
 from trundle.road import RoadClass
 from trundle.route import Route
 from trundle.simulate import Coupled, Crossing, Modal, ensemble
-from trundle.structure import Spot
+from trundle.structure import CONCRETE, ShellSection, Spot
+from trundle.structure.building import (
+    Beam,
+    Building,
+    Column,
+    Meshing,
+    Profile,
+    Ramp,
+    Slab,
+    Storey,
+    build_building,
+)
 from trundle.structure.superelements import Cuts, Parting
 from trundle.structure.superelements.cuts import shares_of
 from trundle.structure.superelements.pieces import like
@@ -195,6 +206,57 @@ def test_planes_outside_cut_nothing_and_ends_are_not_shared():
         total = np.bincount(share.element, weights=share.weight)
         np.testing.assert_allclose(total, np.ones(len(group.connectivity)))
     assert any(np.any(share.weight == 0.5) for share in inner)
+
+
+def test_a_beam_where_planes_cross_hangs_on_the_pieces_that_carry_it():
+    """A ramp rises through the crossing of two planes; the beam across it there has four neighbours.
+
+    Two hold a half of the ramp each, and carry a half of the beam; in the two others it would
+    float, and their stiffness have six motions without strain. Frequencies are the whole's.
+    """
+    slab = ShellSection(thickness=0.2, material=CONCRETE)
+    corners = np.array([[12.0, 0.0], [12.0, 3.0], [24.0, 3.0], [24.0, 0.0]])
+    ramp = Ramp(name="ramp", section=slab, outline=corners, bottom="level 1", top="level 2")
+    rib = Profile.rectangle(0.3, 0.5, CONCRETE)
+    across = Beam(profile=rib, along=np.array([[18.0, 0.0], [18.0, 3.0]]), on="ramp")
+    floor = crossed(ramp, across)
+    cuts = Cuts(x=np.array([18.0]), z=halfway(2))
+    shares = shares_of(floor.elements, floor.nodes, cuts)
+    for group, share in zip(floor.elements, shares, strict=True):
+        total = np.bincount(share.element, weights=share.weight)
+        np.testing.assert_allclose(total, np.ones(len(group.connectivity)))
+        middle = floor.nodes[group.connectivity].mean(axis=1)
+        on = (np.abs(middle[:, [0, 2]] - [18.0, 1.5 * HEIGHT]) < 1e-6).all(axis=1)
+        counted = np.bincount(share.element, minlength=len(on))[on]
+        assert (counted == 2).all()
+    parted = Parting(cuts=cuts, f_parts=60.0, f_seams=200.0).of(floor).modes(15.0)
+    whole = floor.modes(15.0)
+    np.testing.assert_allclose(parted.omega, whole.omega[: parted.n_modes], rtol=5e-3)
+
+
+def crossed(ramp, across):
+    """Two decks on columns, the lower one to the left, and a ramp from it to the upper one."""
+    slab = ShellSection(thickness=0.2, material=CONCRETE, superimposed_mass=200.0)
+    post = Profile.rectangle(0.4, 0.4, CONCRETE)
+    levels = ("level 0", "level 1", "level 2")
+    sides = {"level 1": (6.0, 12.0), "level 2": (24.0, 30.0)}
+    building = Building(
+        name="ramp between two decks",
+        storeys=tuple(Storey(name=name, level=HEIGHT * i) for i, name in enumerate(levels)),
+        slabs=tuple(
+            Slab(on=on, section=slab, outline=np.array([[a, 0], [b, 0], [b, 3], [a, 3]], float))
+            for on, (a, b) in sides.items()
+        ),
+        columns=tuple(
+            Column(profile=post, at=np.array([x, y]), bottom="level 0", top=on, base="fixed")
+            for on, both in sides.items()
+            for x in both
+            for y in (0.0, 3.0)
+        ),
+        beams=(across,),
+        ramps=(ramp,),
+    )
+    return build_building(building, Meshing(mesh_size=1.0))
 
 
 @pytest.mark.parametrize(

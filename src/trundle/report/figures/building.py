@@ -20,6 +20,7 @@ from trundle.report.figures.sources import draw_sources
 from trundle.results.modes import FirstModes
 from trundle.results.study_result import StudyResult
 from trundle.structure.building import Building, Column, Slab, Wall
+from trundle.structure.building.sheets import plane_of
 from trundle.study.model import Study
 
 __all__ = ["drawings", "storey_modes_figure"]
@@ -259,7 +260,7 @@ def _elevation(axes: Axes, building: Building, axis: int) -> None:
         low, high = building.level(column.bottom), building.level(column.top)
         axes.fill_between([x.min(), x.max()], low, high, color="#B0B0B0", linewidth=0.0)
     for brace in building.braces:
-        z = [building.level(name) for name in brace.on]
+        z = [_height(building, *end) for end in zip(brace.on, brace.ends, strict=True)]
         axes.plot(brace.ends[:, axis], z, color=_BEAM, linewidth=1.2)
     for beam in building.beams:
         if beam.on in {s.name for s in building.storeys}:
@@ -286,6 +287,14 @@ def _elevation(axes: Axes, building: Building, axis: int) -> None:
     axes.set(xlabel=f"{'xy'[axis]} [m]", ylabel="z [m]", title=f"seen along {'yx'[axis]}")
     axes.margins(y=0.12)
     axes.grid(visible=False)
+
+
+def _height(building: Building, on: str, place: Array) -> float:
+    """Return how high a storey or ramp is at a place [m]."""
+    for ramp in building.ramps:
+        if ramp.name == on:
+            return float(plane_of(building, ramp) @ [1.0, *place])
+    return building.level(on)
 
 
 def storey_modes_figure(study: Study, modes: FirstModes) -> Figure:

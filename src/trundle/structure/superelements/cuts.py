@@ -72,7 +72,8 @@ def shares_of(
 ) -> tuple[Share, ...]:
     """Return the shares of every group's elements in the pieces between planes.
 
-    Pieces are numbered from 0 without gaps, z changing fastest. Planes outside are passed over.
+    Pieces are numbered from 0 without gaps, z changing fastest. Planes outside are passed over. An
+    element in a plane belongs to no piece in which nothing carries it, if another one does.
     """
     ends = nodes.min(axis=0) + _ON_PLANE, nodes.max(axis=0) - _ON_PLANE
     planes = [
@@ -80,6 +81,7 @@ def shares_of(
         for at, low, high in zip((cuts.x, cuts.y, cuts.z), *ends, strict=True)
     ]
     found = [_in_cells(nodes, group.connectivity, planes) for group in groups]
+    found = _carried(found, [group.connectivity for group in groups], len(nodes))
     used = np.unique(np.concatenate([share.piece for share in found]))
     return tuple(
         Share(
@@ -114,6 +116,51 @@ def _in_cells(nodes: Array, connectivity: Array, planes: Sequence[Array]) -> Sha
         weight = np.concatenate([weight, weight[shared]])
         cell = np.concatenate([cell, cell[shared] + 1])
     return Share(element=element, piece=cell, weight=weight)
+
+
+def _carried(shares: list[Share], ends: Sequence[Array], n_nodes: int) -> list[Share]:
+    """Return shares without those of elements that would float in a piece.
+
+    A beam where two planes cross has four pieces round it, and may hang on two of them alone, as
+    that of a ramp halfway between storeys does.
+    """
+
+    def places(number: int, some: Array) -> Array:
+        """Return piece and node as one number for each end of some shares; -1 on the ground."""
+        node = ends[number][shares[number].element[some]]
+        return np.where(node == GROUND, -1, shares[number].piece[some, None] * n_nodes + node)
+
+    parts = [np.flatnonzero(share.weight < 1.0) for share in shares]
+    held = [np.flatnonzero(share.weight == 1.0) for share in shares]
+    known = np.unique(np.concatenate([places(i, some).ravel() for i, some in enumerate(held)]))
+    known = known[known >= 0]
+    at = [places(i, some) for i, some in enumerate(parts)]
+    while True:  # what touches a carried element is carried
+        carried = [np.isin(some, known).any(axis=1) for some in at]
+        more = [some[yes].ravel() for some, yes in zip(at, carried, strict=True)]
+        now = np.unique(np.concatenate([known, *more]))
+        now = now[now >= 0]
+        if len(now) == len(known):
+            break
+        known = now
+    return [
+        _without_floating(share, some, yes)
+        for share, some, yes in zip(shares, parts, carried, strict=True)
+    ]
+
+
+def _without_floating(share: Share, parts: Array, carried: Array) -> Share:
+    """Return a share with only carried parts of the elements that have any."""
+    element = share.element[parts]
+    n_carried = np.bincount(element[carried], minlength=int(share.element.max(initial=-1)) + 1)
+    floats = parts[~carried & (n_carried[element] > 0)]
+    if not len(floats):
+        return share
+    keep = np.ones(len(share.element), dtype=bool)
+    keep[floats] = False
+    left = share.element[keep]
+    weight = np.where(share.weight < 1.0, 1.0 / np.bincount(left)[share.element], 1.0)
+    return Share(element=left, piece=share.piece[keep], weight=weight[keep])
 
 
 def shares_in_halves(

@@ -7,7 +7,7 @@ equal units stay equal.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -124,29 +124,45 @@ def _carried(shares: list[Share], ends: Sequence[Array], n_nodes: int) -> list[S
     A beam where two planes cross has four pieces round it, and may hang on two of them alone, as
     that of a ramp halfway between storeys does.
     """
-
-    def places(number: int, some: Array) -> Array:
-        """Return piece and node as one number for each end of some shares; -1 on the ground."""
-        node = ends[number][shares[number].element[some]]
-        return np.where(node == GROUND, -1, shares[number].piece[some, None] * n_nodes + node)
-
     parts = [np.flatnonzero(share.weight < 1.0) for share in shares]
-    held = [np.flatnonzero(share.weight == 1.0) for share in shares]
-    known = np.unique(np.concatenate([places(i, some).ravel() for i, some in enumerate(held)]))
-    known = known[known >= 0]
-    at = [places(i, some) for i, some in enumerate(parts)]
+    number, piece, node = map(np.concatenate, zip(*_places(shares, ends, parts), strict=True))
+    known, node = np.unique(node, return_inverse=True)
+    column = np.full(n_nodes, -1)
+    column[known] = np.arange(len(known))
+    n_pieces = 1 + max(int(share.piece.max(initial=0)) for share in shares)
+    touched = np.zeros((n_pieces, len(known)), dtype=bool)
+    whole = [np.flatnonzero(share.weight == 1.0) for share in shares]
+    for _, where, what in _places(shares, ends, whole):
+        there = column[what] >= 0
+        touched[where[there], column[what[there]]] = True
+    n_parts = sum(map(len, parts))
     while True:  # what touches a carried element is carried
-        carried = [np.isin(some, known).any(axis=1) for some in at]
-        more = [some[yes].ravel() for some, yes in zip(at, carried, strict=True)]
-        now = np.unique(np.concatenate([known, *more]))
-        now = now[now >= 0]
-        if len(now) == len(known):
+        before = np.count_nonzero(touched)
+        hit = touched[piece, node].astype(float)
+        carried = np.bincount(number, weights=hit, minlength=n_parts) > 0.0
+        on = carried[number]
+        touched[piece[on], node[on]] = True
+        if np.count_nonzero(touched) == before:
             break
-        known = now
+    by_group = np.split(carried, np.cumsum([len(some) for some in parts])[:-1])
     return [
         _without_floating(share, some, yes)
-        for share, some, yes in zip(shares, parts, carried, strict=True)
+        for share, some, yes in zip(shares, parts, by_group, strict=True)
     ]
+
+
+def _places(
+    shares: Sequence[Share], ends: Sequence[Array], chosen: Sequence[Array]
+) -> Iterator[tuple[Array, Array, Array]]:
+    """Give, group by group, the number of each end's share among the chosen, its piece and node."""
+    first = 0
+    for share, nodes, some in zip(shares, ends, chosen, strict=True):
+        at = nodes[share.element[some]]
+        there = at != GROUND
+        number = np.repeat(first + np.arange(len(some)), there.sum(axis=1))
+        piece = np.repeat(share.piece[some], there.sum(axis=1))
+        yield number, piece, at[there]
+        first += len(some)
 
 
 def _without_floating(share: Share, parts: Array, carried: Array) -> Share:

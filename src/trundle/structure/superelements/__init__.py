@@ -2,6 +2,7 @@
 
 from trundle.structure.superelements.assembly import Joined
 from trundle.structure.superelements.cuts import Cuts
+from trundle.structure.superelements.evidence import PartEvidence
 from trundle.structure.superelements.pencil import ReducedPencil
 from trundle.structure.superelements.reduction import Part, Sorted, reduced_here
 from trundle.structure.superelements.whole import PartedStructure, Parting
@@ -10,6 +11,7 @@ __all__ = [
     "Cuts",
     "Joined",
     "Part",
+    "PartEvidence",
     "PartedStructure",
     "Parting",
     "ReducedPencil",

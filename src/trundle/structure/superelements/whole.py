@@ -20,6 +20,7 @@ from trundle.structure.floor import Floor
 from trundle.structure.model import MirrorPlane
 from trundle.structure.superelements.assembly import Joined
 from trundle.structure.superelements.cuts import Cuts, Share, shares_in_halves, shares_of
+from trundle.structure.superelements.evidence import PartEvidence, evidence_of
 from trundle.structure.superelements.flexibility import PartedFlexibility
 from trundle.structure.superelements.nearness import Nearness
 from trundle.structure.superelements.reduction import (
@@ -275,6 +276,11 @@ class PartedStructure:
                 f"{self.name}: own modes of parts are kept to {self.parting.f_parts:g} Hz, not "
                 f"enough for modes to {f_max:g} Hz: keep them to {2 * f_max:g} Hz"
             )
+
+    def evidence(self) -> tuple[PartEvidence, ...]:
+        """Show of each distinct part that it is what it was: mass, rigid motion, own modes."""
+        both = zip(self.pieces.distinct, self.joined.parts, strict=True)
+        return tuple(evidence_of(piece, part) for piece, part in both)
 
     def flexibility(self) -> Factor:
         """Return what solves for static deflections, part by part."""

@@ -51,7 +51,7 @@ class PartEvidence:
 
     @property
     def grounded(self) -> tuple[str, ...]:
-        """Motions against which the part is held by supports of its own."""
+        """Name the motions against which the part is held by supports of its own."""
         names = ("x", "y", "z", "about x", "about y", "about z")
         return tuple(name for name, s in zip(names, self.strain, strict=True) if s > _FREE)
 

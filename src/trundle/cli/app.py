@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import signal
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +11,7 @@ import typer
 
 from trundle import __version__
 from trundle.cli import options
+from trundle.cli.interrupts import listen
 from trundle.cli.models import models
 from trundle.cli.saying import say
 from trundle.cli.vehicles import vehicles
@@ -271,7 +271,7 @@ def criteria(*, as_json: options.Json = False) -> None:
 
 def main() -> None:
     """Run the command line; turn errors into messages and exit codes."""
-    signal.signal(signal.SIGTERM, _interrupt)
+    listen()
     if isinstance(sys.stdout, io.TextIOWrapper):  # a terminal of another alphabet shows a ?
         sys.stdout.reconfigure(errors="replace")
     try:
@@ -314,8 +314,3 @@ def _say_interrupted() -> None:
         "on with what was finished",
         error=True,
     )
-
-
-def _interrupt(number: int, frame: object) -> None:
-    del number, frame
-    raise KeyboardInterrupt

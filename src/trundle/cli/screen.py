@@ -18,7 +18,8 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
-from trundle._progress import Tell
+from trundle._progress import Tell, silent
+from trundle.cli.interrupts import interruptible
 from trundle.cli.saying import printable, say
 
 __all__ = ["print_table", "progress_bar"]
@@ -48,10 +49,10 @@ def print_table(
 def progress_bar(*, quiet: bool = False) -> Generator[Tell]:
     """Show a bar on a terminal, and one line a stage elsewhere; nothing if quiet."""
     if quiet:
-        yield lambda _what, _share: None
+        yield interruptible(silent)
         return
     if not sys.stderr.isatty():
-        yield _line_teller()
+        yield interruptible(_line_teller())
         return
     with Progress(
         TextColumn("{task.description}", markup=False),
@@ -64,8 +65,8 @@ def progress_bar(*, quiet: bool = False) -> Generator[Tell]:
         transient=True,
     ) as progress:
         task = progress.add_task("", total=1.0)
-        yield lambda what, share: progress.update(
-            task, description=printable(what), completed=share
+        yield interruptible(
+            lambda what, share: progress.update(task, description=printable(what), completed=share)
         )
 
 

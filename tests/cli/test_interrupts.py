@@ -13,6 +13,7 @@ def test_an_interrupt_lost_in_a_callback_is_raised_at_the_next_word_of_progress(
     script = textwrap.dedent(
         f"""
         import ctypes, os, signal
+        signal.signal(signal.{name}, signal.SIG_DFL)
         from trundle.cli.interrupts import listen
         from trundle.cli.screen import progress_bar
         listen()
@@ -41,3 +42,21 @@ def test_without_a_signal_progress_is_told():
     tell("a", 0.25)
     tell("b", 0.5)
     assert heard == [("a", 0.25), ("b", 0.5)]
+
+
+def test_what_was_started_with_ctrl_c_ignored_goes_on_ignoring_it():
+    """A job that a script put in the background is not stopped by Ctrl-C in the foreground."""
+    script = textwrap.dedent(
+        """
+        import os, signal
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        from trundle.cli.interrupts import listen
+        listen()
+        os.kill(os.getpid(), signal.SIGINT)
+        print("went on")
+        """
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False
+    )
+    assert done.stdout == "went on\n", done.stderr

@@ -197,6 +197,13 @@ def test_an_interrupt_waits_for_the_end_of_a_write():
     assert steps == ["written"]
 
 
+HEARING = (
+    "import os, signal, sys; signal.signal(signal.SIGINT, signal.SIG_DFL); "
+    "os.execv(sys.executable, [sys.executable, *sys.argv[1:]])"
+)
+"""Starts Python with Ctrl-C heard: shells have what runs in the background ignore it."""
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("stage", ["coupled", "writing results", "figure"])
 def test_an_interrupted_run_leaves_no_half_results(tmp_path, number, stage):
@@ -208,7 +215,7 @@ def test_an_interrupted_run_leaves_no_half_results(tmp_path, number, stage):
     (out / "summary.json").write_text("{}")
     record_owned(out, "study")
     process = subprocess.Popen(
-        [sys.executable, "-m", "trundle", "run", str(study), "--out", str(out)],
+        [sys.executable, "-c", HEARING, "-m", "trundle", "run", str(study), "--out", str(out)],
         stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=tmp_path,
     )  # fmt: skip
     assert process.stderr is not None

@@ -18,9 +18,14 @@ _asked = threading.Event()
 
 
 def listen() -> None:
-    """Take Ctrl-C and termination alike, and remember them."""
+    """Take Ctrl-C and termination alike, and remember them.
+
+    What was started with Ctrl-C ignored, as a shell starts what runs in the background, goes on
+    ignoring it.
+    """
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _interrupt)
+        if signal.getsignal(number) is not signal.SIG_IGN:
+            signal.signal(number, _interrupt)
 
 
 def interruptible(tell: Tell) -> Tell:

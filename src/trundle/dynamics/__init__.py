@@ -1,5 +1,6 @@
 """Reduce vibrating things to matrices and step them through time."""
 
+from trundle.dynamics.combined_modes import ResponseBasis, response_basis
 from trundle.dynamics.damping import ByMaterial, Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import (
     count_modes_below,
@@ -17,7 +18,6 @@ from trundle.dynamics.lanczos import Interval
 from trundle.dynamics.modes import Basis, Modes
 from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
 from trundle.dynamics.pencil import Pencil, Product, SparsePencil, shift_near
-from trundle.dynamics.response_basis import ResponseBasis, response_basis
 from trundle.dynamics.same_bits import repeatable
 from trundle.dynamics.sampling import (
     REACH,

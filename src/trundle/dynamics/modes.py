@@ -119,7 +119,7 @@ class Modes:
     def combined(
         self, columns: Float[Array, "modes basis"], omega: Float[Array, " basis"]
     ) -> Modes:
-        """Return combinations of the modes in their place (`dynamics.response_basis`).
+        """Return combinations of the modes in their place (`dynamics.combined_modes`).
 
         `columns` says how much of each mode, `omega` at which circular frequency [rad/s].
         """

@@ -46,7 +46,7 @@ class Modal:
         Carry the floor's state over the steps in single precision: faster, to some 1e-4.
     response_tolerance : float
         Step as few combinations of modes as answer between route and points within this error
-        (`dynamics.response_basis`); 0 for all modes.
+        (`dynamics.combined_modes`); 0 for all modes.
     """
 
     f_max: float

@@ -155,7 +155,7 @@ def test_parts_that_landed_survive_a_kill(folder, reduced):
         import os, signal
         from trundle.run.parts import with_kept_parts
         from trundle.structure.superelements import reduction
-        from run.test_parts import CUT, building
+        from run.test_part_tasks import CUT, building
         original, done = reduction.Part.reduced, []
         def dying(part, f_max, **kwargs):
             if len(done) == 2:

@@ -80,7 +80,7 @@ def test_parts_have_the_same_bits_whoever_reduces_them(monkeypatch, folder):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize("workers", [pytest.param(1, marks=pytest.mark.longest), 2])
 def test_parts_have_the_same_bits_by_workers(workers, folder, monkeypatch):
     """A cluster's processes reduce parts and search the spectrum, as this process does."""
     monkeypatch.setattr(run_parts, "dense_is_better", lambda *_: False)
@@ -122,7 +122,16 @@ def test_modes_by_parts_are_kept(reduced):
 
 
 @pytest.mark.parametrize(
-    "name", ["omega", "shapes", "coupling", "stiffness", "mass", "one mode less", "f_max"]
+    "name",
+    [
+        "one mode less",
+        "f_max",
+        "mass",
+        *(
+            pytest.param(name, marks=pytest.mark.longest)
+            for name in ("omega", "shapes", "coupling", "stiffness")
+        ),
+    ],
 )
 def test_a_spoilt_part_is_reduced_again(name, folder, reduced):
     """Numbers that a stranger forged with a sound checksum do not satisfy what defines a part."""

@@ -28,6 +28,7 @@ def result():
     return tr.run_study(tr.study_from_text(BUILDING + CRITERIA + PARTS))
 
 
+@pytest.mark.longest
 def test_the_narrower_structure_is_that_of_a_study_that_keeps_so_much(result):
     """Levels with less are those of the study run anew with that band: nothing else differs."""
     change = result.parts

@@ -51,7 +51,7 @@ def laid_out(kind, tolerance):
     return lay_out(prepared, crossing(), method=method, points=POINTS, duration=6.0)
 
 
-@pytest.mark.parametrize("kind", [Decoupled, Coupled])
+@pytest.mark.parametrize("kind", [pytest.param(Decoupled, marks=pytest.mark.longest), Coupled])
 def test_a_crossing_moves_points_as_on_all_modes(kind):
     """RMS of the difference against that of the motion: of the order of the error that is told."""
     full, fewer = laid_out(kind, 0.0), laid_out(kind, 0.02)

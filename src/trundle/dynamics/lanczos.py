@@ -179,7 +179,9 @@ def _next_slice(
     whole = shift.below + right == wanted
     bounds = (reached.edge, interval.limit if whole else np.inf)
     part, edge = near(pencil.mass, shift, left, right, bounds), interval.limit
-    if not whole:
+    if not whole and len(part.eigenvalues) == left and part.eigenvalues[-1] < shift.value:
+        edge = shift.value  # all below the shift, which inertia has counted, and nothing above
+    elif not whole:
         part, edge = _up_to_a_gap(part)
         if _copies(part.eigenvalues) >= BLOCK:
             part = _completed(pencil, shift, part, (reached.last[-1], edge), found)

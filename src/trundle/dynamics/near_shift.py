@@ -64,22 +64,20 @@ def near(
                 # what lies beyond the bounds converged in the place of copies that do not appear
                 return part if inside.all() else hunted(mass, shift, part, bounds, wanted)
             next_look = int(1.08 * krylov.size)
-    # Where copies are missing, others in their place may be too far to converge.
     whole = bool(np.isfinite(bounds[1]))
+    nu, ritz, errors = krylov.ritz_pairs()
+    good, values = errors <= _ACCURATE * np.abs(nu), shift.value + 1.0 / nu
+    fewer = int(np.argmin(np.r_[good[::-1], False]))  # on the right, all that lie nearest
+    pick = np.r_[:left, len(nu) - fewer : len(nu)]
+    if not whole and fewer > BLOCK and good[:left].all() and values[pick].min() >= bounds[0]:
+        pick = pick[np.argsort(values[pick])]  # the rest by later shifts
+        return EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
+    # Where copies are missing, others in their place may be too far to converge.
     if whole or left:
         bounds = bounds if whole else (bounds[0], shift.value)
-        nu, ritz, errors = krylov.ritz_pairs()
-        values = shift.value + 1.0 / nu
-        found = (values >= bounds[0]) & (values < bounds[1]) & (errors <= _ACCURATE * np.abs(nu))
-        pick = np.flatnonzero(found)
+        pick = np.flatnonzero((values >= bounds[0]) & (values < bounds[1]) & good)
         part = EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
         return hunted(mass, shift, part, bounds, wanted if whole else left)
-    nu, ritz, errors = krylov.ritz_pairs()
-    some = int(np.argmin(np.r_[(errors <= _ACCURATE * np.abs(nu))[::-1], False]))
-    if some > BLOCK:  # fewer than were wanted, but all that lie nearest: the rest by later shifts
-        pick = np.arange(len(nu) - 1, len(nu) - 1 - some, -1)
-        eigenvalues = shift.value + 1.0 / nu[pick]
-        return EigenSlice(eigenvalues=eigenvalues, shapes=krylov.vectors(ritz[:, pick]))
     raise ConvergenceError(
         f"{wanted} modes wanted near {np.sqrt(max(shift.value, 0.0)) / (2.0 * np.pi):.6g} Hz by "
         f"inertia, but the iteration stopped short with a subspace of {krylov.size}",

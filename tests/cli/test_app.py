@@ -6,11 +6,12 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 
 import pytest
 
 from studies import GOOD, run_main
-from trundle.cli import app, commands
+from trundle.cli import commands, interrupts
 from trundle.errors import ComputationError, InputError, UnrestrainedModeError
 
 
@@ -79,13 +80,16 @@ def test_a_message_cannot_steer_the_terminal(raising):
 
 def test_a_signal_to_end_is_an_interrupt(monkeypatch):
     """A scheduler's SIGTERM ends as Ctrl-C does: what was finished is kept."""
-    before = signal.getsignal(signal.SIGTERM)
+    monkeypatch.setattr(interrupts, "_asked", threading.Event())
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.getsignal(number) for number in numbers]
     try:
-        signal.signal(signal.SIGTERM, app._interrupt)
+        interrupts.listen()
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGTERM)
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, handler)
 
 
 @pytest.mark.parametrize(

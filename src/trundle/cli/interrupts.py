@@ -23,6 +23,7 @@ def listen() -> None:
     What was started with Ctrl-C ignored, as a shell starts what runs in the background, goes on
     ignoring it.
     """
+    _asked.clear()
     for number in (signal.SIGINT, signal.SIGTERM):
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _interrupt)

@@ -67,7 +67,8 @@ def near(
     whole = bool(np.isfinite(bounds[1]))
     nu, ritz, errors = krylov.ritz_pairs()
     good, values = errors <= _ACCURATE * np.abs(nu), shift.value + 1.0 / nu
-    fewer = int(np.argmin(np.r_[good[::-1], False]))  # on the right, all that lie nearest
+    # on the right, all that lie nearest; those on the left are not taken twice
+    fewer = min(right, int(np.argmin(np.r_[good[::-1], False])))
     pick = np.r_[:left, len(nu) - fewer : len(nu)]
     if not whole and fewer > BLOCK and good[:left].all() and values[pick].min() >= bounds[0]:
         pick = pick[np.argsort(values[pick])]  # the rest by later shifts

@@ -45,7 +45,7 @@ _BATCH = 0.4e9  # of the histories of a batch, at most
 _USUAL_MODES = 600.0  # below 100 Hz, of a model whose slab is not known
 _AT_ONCE = 2  # batches in work
 _FACTOR = 8.0 * 60.0  # bytes of a factor for each degree of freedom and doubling of them
-_PARTED = 7e3  # bytes for each degree of freedom of a structure by parts: how they follow seams
+_PARTED = 7e3  # bytes for each degree of freedom of a structure by parts
 _MAP = 2.2e9  # of spectra and responses of a map, at most
 
 

@@ -9,8 +9,6 @@ from towers import HEIGHT, SPAN, halfway, tower
 from trundle.structure.superelements import Cuts, Parting
 from trundle.structure.superelements.evidence import evidence_of
 
-PLATES = SPAN * 2 * SPAN * (0.2 * 2400.0 + 200.0)  # one storey of 2 x 1 bays: slab and its load
-
 
 @functools.cache
 def parted():
@@ -19,7 +17,7 @@ def parted():
 
 
 def test_a_storey_weighs_its_slab_and_columns_in_all_directions():
-    """Middle storey: 12 m x 6 m of slab, six columns one storey high; beams' density is concrete's."""
+    """Middle storey, by hand: 12 m x 6 m of slab with its load, six columns one storey high."""
     (middle,) = [e for e in parted().evidence() if not e.grounded and e.n_boundary > 40]
     density = parted().whole.shells[0].section.material.density
     slab = SPAN * 2 * SPAN * (0.2 * density + 200.0)

@@ -249,7 +249,9 @@ class PartedStructure:
         near = self.nearness
         if near is not None:
             near = replace(near, near=near.near / factor)
-        return replace(self, parting=parting, reducer=fewer, nearness=near)
+        return self._in_the_same_pieces(
+            replace(self, parting=parting, reducer=fewer, nearness=near)
+        )
 
     def near_to(self, dofs: Int[Array, " dofs"]) -> PartedStructure:
         """Return the same, of which parts far from some free dofs are kept to less.
@@ -260,9 +262,12 @@ class PartedStructure:
             return self
         places = np.unique(self.pieces.where[dofs], axis=0)
         near = Nearness(places=places, near=self.parting.near)
-        nearer = replace(self, nearness=near)
-        nearer.__dict__["pieces"] = self.pieces
-        return nearer
+        return self._in_the_same_pieces(replace(self, nearness=near))
+
+    def _in_the_same_pieces(self, other: PartedStructure) -> PartedStructure:
+        """Return another of equal cuts, whose pieces need not be sorted once more."""
+        other.__dict__["pieces"] = self.pieces  # where the cached property keeps them
+        return other
 
     def less_than(self, other: PartedStructure) -> bool:
         """Return whether less is kept of every part than in another of equal parts."""

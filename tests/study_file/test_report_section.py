@@ -34,9 +34,7 @@ def test_printed_units_have_the_sizes_that_study_files_read_them_with(unit):
     dimension = {"/s2": "acceleration", "/s": "speed"}.get(unit[unit.find("/") :], "length")
     if unit in {"gal", "mg"}:
         dimension = "acceleration"
-    words = {"mg": "0.001 g", "mil/s": "0.001 in/s", "mil": "0.001 in"}.get(
-        unit, f"1 {unit}"
-    )
+    words = {"mg": "0.001 g", "mil/s": "0.001 in/s", "mil": "0.001 in"}.get(unit, f"1 {unit}")
     assert PRINTED[unit] == pytest.approx(to_si(words, dimension), rel=1e-12)
 
 

@@ -30,6 +30,7 @@ __all__ = [
     "class_ranks",
     "map_payload",
     "map_views",
+    "worst_place",
 ]
 
 
@@ -186,7 +187,7 @@ def _view(result: StudyResult, view: MapView) -> dict[str, Any]:
         ],
         "fields": _fields(view),
         "complete": [bool(classes.complete[k]) for k in classes.order()],
-        "worst": _worst_of(view, classes.margin[i]),
+        "worst": _worst_of(view, plan.criterion),
         "readings": [
             _readings(view.grid.filled(values))
             for values in (
@@ -226,13 +227,23 @@ def _fields(view: MapView) -> list[list[list[int | None]]]:
     return found
 
 
-def _worst_of(view: MapView, margin: Array) -> dict[str, float] | None:
-    """Return where the margin to the criterion that is mapped is smallest, and how small."""
+def worst_place(view: MapView, criterion: str) -> tuple[float, float, float] | None:
+    """Return where the margin to a criterion is smallest [m], and how small; None if unknown."""
+    margin = view.classes.margin[view.classes.index(criterion)]
     if np.isnan(margin).all():
         return None
     at = int(np.nanargmin(margin))
     x, y = view.grid.xy[at]
-    return {"x": float(f"{x:.6g}"), "y": float(f"{y:.6g}"), "margin": float(f"{margin[at]:.3g}")}
+    return float(x), float(y), float(margin[at])
+
+
+def _worst_of(view: MapView, criterion: str) -> dict[str, float] | None:
+    """Return the worst place as the page takes it."""
+    found = worst_place(view, criterion)
+    if found is None:
+        return None
+    x, y, margin = found
+    return {"x": float(f"{x:.6g}"), "y": float(f"{y:.6g}"), "margin": float(f"{margin:.3g}")}
 
 
 def _plan(lines: PlanLines) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
 from trundle.report.canvas import COLOURS, Drawing, class_colours, legend_below, new_figure
+from trundle.report.figures.class_plan import fill_classes
 from trundle.report.figures.sources import draw_sources
 from trundle.response.quantities import Quantity, mapped
 from trundle.results.study_result import StudyResult
@@ -110,6 +111,7 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
     for panel, view in zip(panels, views, strict=True):
         levels = class_ranks(view.classes)
         _image(panel, study, view, levels, cmap=ListedColormap(colours), norm=norm)
+        fill_classes(panel, view)
     shown = sorted({int(r) for view in views for r in class_ranks(view.classes)})
     ranks = shown[::-1]
     legend_below(

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from trundle.criteria import Criterion
 from trundle.report.canvas import (
@@ -18,6 +19,7 @@ from trundle.report.canvas import (
     make_logarithmic,
     new_figure,
 )
+from trundle.report.figures.passing import draw_passing, passing_handles
 from trundle.response import BandSpectra
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
@@ -63,7 +65,8 @@ def _histories(result: StudyResult) -> Iterator[Drawing]:
         yield Drawing(
             name=f"history_{i + 1}" + (f"_{j + 1}" if j else ""),
             title=f"Acceleration at {point}: {what}",
-            caption="First realisation by each method, on the same road.",
+            caption="First realisation by each method, on the same road; bars above it while each "
+            "source is on the floor, with a mark where its front axle is nearest to the point.",
             draw=lambda name=case.name, point=point: history_figure(result, name, point),
         )
 
@@ -84,7 +87,8 @@ def _criteria(result: StudyResult, assessment: Assessment) -> Iterator[Drawing]:
             yield Drawing(
                 name=f"criteria_velocity_{k + 1}{end}",
                 title=f"Velocity spectra at {point} against criteria, class {road}",
-                caption="One-third-octave RMS velocity on the generic criteria.",
+                caption="One-third-octave RMS velocity on the velocity criteria; hatched where a "
+                "criterion asks for a band that a case does not tell.",
                 draw=lambda road=road, point=point: velocity_criteria_figure(
                     result, road, method, point
                 ),
@@ -113,11 +117,14 @@ def history_figure(result: StudyResult, case: str, point: str) -> Figure:
     i = list(study.points).index(point)
     unit, size = shown("m/s2", study.report)
     for panel, (method, road) in zip(axes, itertools.product(methods, roads), strict=True):
-        history = result.cells[CellKey(case, road, method)].history
+        key = CellKey(case, road, method)
+        history = result.cells[key].history
         values = history.acceleration[:, i] / size
         colour = COLOURS[methods.index(method) % len(COLOURS)]
         panel.plot(history.time, values, color=colour, linewidth=0.8)
         panel.set(xlim=(0.0, history.time[-1]))
+        panel.margins(y=0.2)
+        draw_passing(panel, result, key, point, float(history.time[-1]))
         panel.set_title(
             f"{method}, class {road}: peak {np.abs(values).max():.3g} {unit}",
             loc="left",
@@ -127,6 +134,7 @@ def history_figure(result: StudyResult, case: str, point: str) -> Figure:
         panel.set_ylabel(f"a [{unit}]")
     for panel in axes[-len(roads) :]:
         panel.set_xlabel("time [s]")
+    legend_below(figure, *passing_handles(result, key), columns=2)
     return figure
 
 
@@ -136,6 +144,7 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     unit, size = shown("m/s", result.study.report)
     for criterion in _limits(result.study, point, "band_rms_velocity"):
         draw_criterion(axes, criterion, size)
+    hatch = _draw_unknown(axes, result, CellKey("", road, method), point)
     i = list(result.study.points).index(point)
     spectra_rule = result.study.assessment.averaging if result.study.assessment else "max_1s"
     for number, case in enumerate(result.study.cases):
@@ -154,8 +163,27 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     axes.set_title(
         f"class {road}, {point}, method {method!r}: median and 5-95 % of the runs", fontsize=9
     )
-    legend_below(figure, *axes.get_legend_handles_labels(), columns=len(result.study.cases))
+    handles, labels = axes.get_legend_handles_labels()
+    if hatch is not None:
+        handles, labels = [*handles, hatch], [*labels, "not assessed for a case or all"]
+    legend_below(figure, handles, labels, columns=len(labels))
     return figure
+
+
+def _draw_unknown(axes: Axes, result: StudyResult, which: CellKey, point: str) -> Patch | None:
+    """Hatch bands that a criterion asks for and some case does not tell; return the look."""
+    bands = {
+        f
+        for key, verdicts in result.verdicts.items()
+        if (key.road, key.method) == (which.road, which.method)
+        for v in verdicts
+        if v.point == point and v.criterion.quantity == "band_rms_velocity"
+        for f in (*v.unresolved, *v.unexcited)
+    }
+    look = {"facecolor": "none", "edgecolor": "#9A9A9A", "hatch": "////", "linewidth": 0.0}
+    for f in bands:
+        axes.axvspan(f * 10.0**-0.05, f * 10.0**0.05, zorder=0.5, **look)
+    return Patch(**look) if bands else None
 
 
 def _draw_levels(

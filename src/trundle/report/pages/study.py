@@ -14,6 +14,7 @@ from trundle.errors import InputError
 from trundle.report.canvas import Drawing, class_colours
 from trundle.report.figures import (
     building,
+    class_plan,
     day,
     floor,
     given_road,
@@ -50,6 +51,7 @@ _FILES = (
     vehicle,
     response,
     day,
+    class_plan,
     map,
 )  # in the order of the page
 

@@ -115,7 +115,7 @@ def fill_classes(axes: Axes, view: MapView) -> None:
 
 
 def _to_the_edge(line: Array) -> Array:
-    """Return a line of places with half a step more at both ends, which belongs to the outermost."""
+    """Return a line of places with half a step more at both ends, theirs to fill."""
     steps = np.diff(line)
     return np.concatenate([[line[0] - 0.5 * steps[0]], line, [line[-1] + 0.5 * steps[-1]]])
 
@@ -150,12 +150,11 @@ def _draw_grid(
         axes.text(*at, f"{apart:.4g} m", ha="center", va="center", fontsize=6.5, rotation=turn)
     if lines.north is not None:
         angle = np.deg2rad(90.0 + lines.north)
-        tip = np.array([np.cos(angle), np.sin(angle)]) * 0.05
-        start = np.array([0.95, 0.93]) - tip
+        dx, dy = 0.05 * float(np.cos(angle)), 0.05 * float(np.sin(angle))
         axes.annotate(
             "N",
-            start,
-            xytext=start + 2.0 * tip,
+            (0.95 - dx, 0.93 - dy),
+            xytext=(0.95 + dx, 0.93 + dy),
             xycoords="axes fraction",
             textcoords="axes fraction",
             arrowprops={"arrowstyle": "<|-", "color": "black"},

@@ -134,7 +134,8 @@ def history_figure(result: StudyResult, case: str, point: str) -> Figure:
         panel.set_ylabel(f"a [{unit}]")
     for panel in axes[-len(roads) :]:
         panel.set_xlabel("time [s]")
-    legend_below(figure, *passing_handles(result, key), columns=2)
+    first = CellKey(case, roads[0], methods[0])
+    legend_below(figure, *passing_handles(result, first), columns=2)
     return figure
 
 
@@ -180,10 +181,11 @@ def _draw_unknown(axes: Axes, result: StudyResult, which: CellKey, point: str) -
         if v.point == point and v.criterion.quantity == "band_rms_velocity"
         for f in (*v.unresolved, *v.unexcited)
     }
-    look = {"facecolor": "none", "edgecolor": "#9A9A9A", "hatch": "////", "linewidth": 0.0}
+    look = Patch(facecolor="none", edgecolor="#9A9A9A", hatch="////", linewidth=0.0)
     for f in bands:
-        axes.axvspan(f * 10.0**-0.05, f * 10.0**0.05, zorder=0.5, **look)
-    return Patch(**look) if bands else None
+        low, high = f * 10.0**-0.05, f * 10.0**0.05
+        axes.axvspan(low, high, zorder=0.5, fc="none", ec="#9A9A9A", hatch="////", lw=0.0)
+    return look if bands else None
 
 
 def _draw_levels(

@@ -12,6 +12,7 @@ from jaxtyping import Float
 
 from trundle._html import html_table
 from trundle._kinds import kinds_checked
+from trundle._progress import Tell, silent
 from trundle._typing import Array
 from trundle.criteria import (
     BY_FREQUENCY,
@@ -21,19 +22,32 @@ from trundle.criteria import (
     spectra_asked_for,
 )
 from trundle.errors import FitnessWarning, InputError
+from trundle.records.doses import PeriodDose, doses
+from trundle.records.events import ChannelEvents, find_events
+from trundle.records.survey import Survey
+from trundle.records.surveying import Surveyor
 from trundle.response import (
     RunLevels,
+    SectionLevels,
+    SpectrumQuantity,
+    join_sections,
     level_warnings,
-    reduce_record,
+    reduce_section,
 )
 from trundle.results.owned import check_unchanged
 from trundle.results.zarr_check import check_whole, check_zarr
-from trundle.signals import Averaging, Record, band_limit, doubtful_channels
-from trundle.simulate import Runs
+from trundle.signals import (
+    Averaging,
+    Record,
+    band_limit,
+    doubtful_channels,
+    record_sections,
+    record_warnings,
+)
 
 __all__ = ["RecordResult", "Simulated", "assess_record", "read_simulated"]
 
-_READ = (
+_STORED = (
     "band_velocity",
     "case",
     "road",
@@ -70,8 +84,8 @@ class RecordResult:
     ----------
     record : Record
         The record in SI.
-    runs : Runs
-        Its motion, channels as points.
+    doubts : tuple of FitnessWarning
+        What is doubtful about it.
     reduced : RunLevels
         Levels and peaks of every channel.
     criteria : tuple of Criterion
@@ -82,22 +96,31 @@ class RecordResult:
         Averaging rule of band levels.
     high_pass : float
         Frequency below which motion is taken for drift [Hz].
+    survey : Survey
+        How it runs: levels over time, spectra, doses.
+    events : tuple of ChannelEvents
+        What stands out of it, one for each channel.
+    doses : tuple of PeriodDose
+        Vibration dose values of days and nights, or of the record.
     simulated : tuple of Simulated
         Simulations laid beside it.
     """
 
     record: Record
-    runs: Runs
+    doubts: tuple[FitnessWarning, ...]
     reduced: RunLevels
     criteria: tuple[Criterion, ...]
     verdicts: tuple[Verdict, ...]
     averaging: Averaging
     high_pass: float
+    survey: Survey
+    events: tuple[ChannelEvents, ...]
+    doses: tuple[PeriodDose, ...]
     simulated: tuple[Simulated, ...] = ()
 
     def __repr__(self) -> str:
         """Say in a line what is said of the record."""
-        names = ", ".join(self.runs.point_names)
+        names = ", ".join(self.record.channel_names)
         said = "; ".join(map(str, self.verdicts)) or "held against nothing"
         return f"<RecordResult of {self.record.source!r}, {names}: {said}>"
 
@@ -116,7 +139,7 @@ class RecordResult:
     def warnings(self) -> tuple[FitnessWarning, ...]:
         """Return the doubts about the record, and about levels of one passage."""
         length = self.record.samples.shape[1] / self.record.sampling_frequency
-        return (*self.runs.warnings, *level_warnings(self.averaging, length))
+        return (*self.doubts, *level_warnings(self.averaging, length))
 
 
 @kinds_checked
@@ -128,6 +151,7 @@ def assess_record(
     high_pass: float = 0.5,
     events: float = 1.0,
     simulated: Sequence[Simulated] = (),
+    tell: Tell = silent,
 ) -> RecordResult:
     """Hold a record against criteria, as a run of a simulation is.
 
@@ -145,9 +169,14 @@ def assess_record(
         How many such events a vibration dose is for.
     simulated : sequence of Simulated
         Simulations to lay beside it.
+    tell : callable, optional
+        Told which part of the record is read, and the share done.
 
     Notes
     -----
+    A long record is read section by section: beside its samples no more is held than a section,
+    some copies of one channel while it is looked at for faults, and running levels.
+
     A channel that is clipped or hides a gap passes nothing, for its true levels may be higher; nor
     does a record too short for the 1 Hz band pass a single number that weighs it.
     """
@@ -157,28 +186,51 @@ def assess_record(
             f"to 0.5 Hz at most; got {high_pass:g} Hz"
         )
     many = tuple(criteria)
-    runs, reduced = reduce_record(
-        record,
-        high_pass=high_pass,
-        averaging=averaging,
-        quantities=spectra_asked_for(many),
-    )
+    reduced, survey = _read(record, spectra_asked_for(many), averaging, high_pass, tell)
     f_resolved = band_limit(record.sampling_frequency)
     found = assess_reduced(
         reduced, many, percentile=100.0, f_resolved=f_resolved, events=events, axes=record.axes
     )
     doubtful = doubtful_channels(record)
     verdicts = tuple(_unless_in_doubt(verdict, record, doubtful) for verdict in found)
+    names = record.channel_names
     return RecordResult(
         record=record,
-        runs=runs,
+        doubts=record_warnings(record),
         reduced=reduced,
         criteria=many,
         verdicts=verdicts,
         averaging=averaging,
         high_pass=high_pass,
+        survey=survey,
+        events=tuple(
+            find_events(i, survey.running, [v for v in verdicts if v.point == name], name)
+            for i, name in enumerate(names)
+        ),
+        doses=doses(survey.dose, record.duration, record.begin),
         simulated=tuple(simulated),
     )
+
+
+def _read(
+    record: Record,
+    quantities: Sequence[SpectrumQuantity],
+    averaging: Averaging,
+    high_pass: float,
+    tell: Tell,
+) -> tuple[RunLevels, Survey]:
+    """Read a record section by section; return its levels and how it runs."""
+    parts: list[SectionLevels] = []
+    surveyor = Surveyor(record, averaging)
+    n = record.samples.shape[1]
+    for section in record_sections(record, high_pass=high_pass):
+        tell(f"levels of {record.source}", section.first / n)
+        part = reduce_section(
+            record, section, high_pass=high_pass, averaging=averaging, quantities=quantities
+        )
+        surveyor.take(section, part.felt)
+        parts.append(replace(part, felt=part.felt[:, :0]))
+    return join_sections(record, parts), surveyor.survey()
 
 
 def _unless_in_doubt(verdict: Verdict, record: Record, doubtful: Sequence[str]) -> Verdict:
@@ -216,7 +268,7 @@ def read_simulated(
     if not store.is_dir():
         raise InputError(f"{folder}: is no results folder of trundle (no results.zarr in it)")
     check_zarr(store)
-    for name in _READ:
+    for name in _STORED:
         check_whole(store, name)
     check_unchanged(folder, store.name)
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from datetime import datetime
 
 import numpy as np
 from jaxtyping import Float
@@ -54,6 +55,8 @@ class RawRecord:
         Whether they are shares of a full scale, as the whole numbers of a WAV file are.
     notes : tuple of str
         What was passed over or made good.
+    begin : datetime or None
+        Local time of the first sample; of year 1 where only the time of day is known.
     """
 
     samples: Float[Array, "channels steps"]
@@ -64,6 +67,7 @@ class RawRecord:
     ranges: tuple[str, ...] = ()
     whole: bool = False
     notes: tuple[str, ...] = ()
+    begin: datetime | None = None
 
     def chosen(self, which: list[int]) -> RawRecord:
         """Return some of the channels, in that order."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from trundle.records.foreign import foreign
 from trundle.records.headings import usual_unit
 from trundle.records.raw import RawRecord
 from trundle.records.record_format import all_formats, format_of
+from trundle.records.stamps import clock_begin
 from trundle.records.table import read_table
 from trundle.signals import Axis, Record, RecordQuantity, axis_of, channel_fault
 from trundle.units import motion_scale, to_si
@@ -40,6 +42,8 @@ class RecordOptions:
         What the largest number of a WAV file stands for, as ``20 m/s2`` or ``10 V``.
     channel : str
         Which channels: names, numbers from 1, units or ``vertical``, between commas; all if empty.
+    start : str
+        Local time of the first sample, as ``22:30`` or ``2024-05-03 22:30:00``.
     """
 
     unit: str = ""
@@ -47,6 +51,7 @@ class RecordOptions:
     sensitivity: str = ""
     full_scale: str = ""
     channel: str = ""
+    start: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +87,7 @@ def read_record(path: Path, options: RecordOptions) -> Record:
         raise InputError(f"{path}: --full-scale is for WAV files; say --unit")
     if options.full_scale and options.unit:
         raise InputError(f"{path}: --full-scale says the unit too; leave --unit out")
-    stated = _stated_rate(options.rate)
+    stated, begin = _stated_rate(options.rate), _stated_start(options.start)
     raw = choose(_raw(data, path, options, stated), options.channel, str(path))
     if raw.whole and not options.full_scale:
         raise InputError(
@@ -90,7 +95,19 @@ def read_record(path: Path, options: RecordOptions) -> Record:
             "--full-scale '20 m/s2', or in volts with a --sensitivity"
         )
     rate = _rate(raw, stated, path)
-    return _record(raw, rate, options, path)
+    return _record(replace(raw, begin=begin or raw.begin), rate, options, path)
+
+
+def _stated_start(text: str) -> datetime | None:
+    """Return the local time that the user says; None if he does not."""
+    if not text:
+        return None
+    found = clock_begin([[text.strip()]])
+    if found is None:
+        raise InputError(
+            f"--start {text!r}: must be a local time, as in '22:30' or '2024-05-03 22:30:00'"
+        )
+    return found
 
 
 def _stated_rate(text: str) -> float | None:
@@ -174,6 +191,7 @@ def _record(raw: RawRecord, rate: float, options: RecordOptions, path: Path) -> 
         source="".join(c if c.isprintable() else "?" for c in path.name),
         axes=tuple(_axis(axes[i], raw.names[i]) for i in sound),
         notes=tuple(notes),
+        begin=raw.begin,
     )
 
 

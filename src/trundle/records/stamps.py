@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from contextlib import suppress
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 from trundle._typing import Array
 from trundle.errors import InputError
 
-__all__ = ["clock_seconds", "even_rate", "is_stamp", "on_even_time"]
+__all__ = ["clock_begin", "clock_seconds", "even_rate", "is_stamp", "on_even_time"]
 
 _CLOCK = re.compile(r"^\d{1,2}:\d{2}(?::\d{2}(?:[.,:]\d+)?)?\s*(?:[AP]M)?$", re.IGNORECASE)
 _DATE = re.compile(r"^\d{1,4}[-./]\d{1,2}[-./]\d{1,4}$")
@@ -67,6 +67,36 @@ def clock_seconds(columns: list[list[str]], path: Path) -> Float[Array, " steps"
     if not any(days.values()):  # times of day alone go back at midnight
         out += _DAY * np.cumsum(np.concatenate([[0.0], np.diff(out) < -0.5 * _DAY]))
     return out - out[0]
+
+
+def clock_begin(columns: list[list[str]]) -> datetime | None:
+    """Return the local time of the first of some stamps; None where it is not told.
+
+    Parameters
+    ----------
+    columns : list of list of str
+        One column of stamps, or two.
+
+    Returns
+    -------
+    datetime or None
+        Of year 1 where stamps are times of day alone; None for dates alone, and for times of
+        Greenwich (``Z``), of which nobody says how late it is where the record is from.
+    """
+    first = " ".join(column[0] for column in columns).strip()
+    both = _BOTH.match(first)
+    clock = both["clock"] if both else first
+    if first.upper().endswith("Z") or not _CLOCK.match(clock):
+        return None
+    with suppress(ValueError, KeyError):
+        day = 2.0 * _DAY  # the second of year 1, for the night before it begins on the first
+        if both:
+            texts = dict.fromkeys(" ".join(parts).strip() for parts in zip(*columns, strict=True))
+            dates = [found["date"] for found in map(_BOTH.match, texts) if found]
+            day = _days(list(dict.fromkeys(dates)))[both["date"]]
+        midnight = datetime.fromordinal(round(day / _DAY))
+        return midnight + timedelta(seconds=_seconds(clock))
+    return None
 
 
 def _days(dates: list[str]) -> dict[str, float]:

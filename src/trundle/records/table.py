@@ -17,7 +17,7 @@ from trundle.records.headings import Heading, facts_of, read_heading, tells_unit
 from trundle.records.lines import Layout, find_table, text_of
 from trundle.records.names_above import DECIMAL, TWO_OR_ONE
 from trundle.records.raw import Facts, RawRecord
-from trundle.records.stamps import clock_seconds, even_rate, is_stamp, on_even_time
+from trundle.records.stamps import clock_begin, clock_seconds, even_rate, is_stamp, on_even_time
 from trundle.units import to_si
 
 __all__ = ["read_table"]
@@ -97,7 +97,9 @@ def read_table(data: bytes, path: Path, *, rate: float | None = None) -> RawReco
                 f"{path}: says {facts.rate:.5g} Hz above its table, and its time {found:.5g} Hz; "
                 "one is wrong"
             )
+    clock = [i for i in stamps if cells is not None and is_stamp(cells[0][i])]
     return RawRecord(
+        begin=clock_begin([[r[i] for r in cells] for i in clock[:2]]) if cells and clock else None,
         samples=samples,
         rate=found,
         names=tuple(headings[i].name for i in others),

@@ -15,6 +15,7 @@ from trundle.response.reduction import (
     reduce_on_scaled_roads,
     reduce_runs,
 )
+from trundle.response.sections import SectionLevels, join_sections, reduce_section
 from trundle.response.size_doubts import size_warnings
 from trundle.response.spectra import (
     BandSpectra,
@@ -35,6 +36,7 @@ __all__ = [
     "Quantity",
     "Reading",
     "RunLevels",
+    "SectionLevels",
     "SpectrumQuantity",
     "UpperBounds",
     "behind_isolators",
@@ -42,12 +44,14 @@ __all__ = [
     "few_runs_warnings",
     "floor_map",
     "join",
+    "join_sections",
     "level_warnings",
     "percentile_interval",
     "percentile_rank",
     "reduce_on_scaled_roads",
     "reduce_record",
     "reduce_runs",
+    "reduce_section",
     "size_warnings",
     "spectra_of",
     "tabled",

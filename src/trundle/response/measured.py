@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from trundle._typing import Array
 from trundle.response.reduction import RunLevels, reduce_runs
 from trundle.response.spectra import BandSpectra, SpectrumQuantity
 from trundle.signals import Averaging, Record, record_warnings, wide_motion_of
 from trundle.simulate import Runs
 
-__all__ = ["reduce_record"]
+__all__ = ["reduce_record", "runs_of", "without_short_bands"]
 
 
 def reduce_record(
@@ -37,12 +38,34 @@ def reduce_record(
     quantities : iterable of SpectrumQuantity
         Spectra wanted beside that of velocity.
     """
-    horizontal = tuple(i for i, axis in enumerate(record.axes) if axis == "horizontal")
     motion, seen = wide_motion_of(record, high_pass=high_pass)
+    wide = runs_of(record, motion, seen.start, high_pass=high_pass)
+    wide = replace(wide, warnings=record_warnings(record))
+    reduced = reduce_runs(wide, averaging=averaging, quantities=quantities, record=seen)
+    return _seen(wide, seen), without_short_bands(reduced, record)
+
+
+def runs_of(
+    record: Record, motion: tuple[Array, Array, Array], before: int, *, high_pass: float
+) -> Runs:
+    """Return the motion of a record's channels as that of points in one run, without doubts.
+
+    Parameters
+    ----------
+    record : Record
+        The record.
+    motion : tuple of three ndarray of float, shape (n_channels, n_steps)
+        Displacement, velocity and acceleration [m], [m/s], [m/s2].
+    before : int
+        Steps before time 0.
+    high_pass : float
+        Frequency below which motion was taken for drift [Hz].
+    """
+    horizontal = tuple(i for i, axis in enumerate(record.axes) if axis == "horizontal")
     displacement, velocity, acceleration = (np.ascontiguousarray(x.T)[None] for x in motion)
     n_steps, fs = velocity.shape[1], record.sampling_frequency
-    wide = Runs(
-        time=(np.arange(n_steps) - seen.start) / fs,
+    return Runs(
+        time=(np.arange(n_steps) - before) / fs,
         displacement=displacement,
         velocity=velocity,
         acceleration=acceleration,
@@ -52,11 +75,8 @@ def reduce_record(
         seed=0,
         method=f"measured {record.quantity}, high-pass {high_pass:g} Hz",
         f_max=0.5 * fs,
-        warnings=record_warnings(record),
         horizontal=horizontal,
     )
-    reduced = reduce_runs(wide, averaging=averaging, quantities=quantities, record=seen)
-    return _seen(wide, seen), _without_short_bands(reduced, record)
 
 
 def _seen(wide: Runs, seen: slice) -> Runs:
@@ -70,7 +90,7 @@ def _seen(wide: Runs, seen: slice) -> Runs:
     )
 
 
-def _without_short_bands(reduced: RunLevels, record: Record) -> RunLevels:
+def without_short_bands(reduced: RunLevels, record: Record) -> RunLevels:
     """Return levels without those of bands of which the record holds fewer than 8 periods."""
 
     def held(spectra: BandSpectra) -> BandSpectra:

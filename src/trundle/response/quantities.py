@@ -99,6 +99,9 @@ class Quantity:
         Whether it is among the labelled arrays.
     mapped : Mapped or None
         How it is mapped over a floor; None if it is not.
+    joined : {"largest", "at largest", "rms", "dose"}
+        How values of a record's sections make that of the whole: the largest; that of the section
+        whose acceleration is largest; as mean squares; as sums of fourth powers.
     measure : callable
         Takes `Histories`; returns an array of shape (n_runs, n_points or n_contacts).
     """
@@ -110,6 +113,7 @@ class Quantity:
     per: Literal["point", "contact"] = "point"
     stored: bool = True
     mapped: Mapped | None = None
+    joined: Literal["largest", "at largest", "rms", "dose"] = "largest"
     measure: Callable[[Histories], Array]
 
 
@@ -133,6 +137,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="s",
         long_name="time of the largest absolute acceleration",
         stored=False,
+        joined="at largest",
         measure=lambda h: h.time[np.abs(h.acceleration).argmax(axis=1)],
     ),
     Quantity(
@@ -147,6 +152,7 @@ QUANTITIES: tuple[Quantity, ...] = (
             title="RMS velocity over the floor",
             word="record RMS",
         ),
+        joined="rms",
         measure=lambda h: np.sqrt(np.mean(h.velocity**2, axis=1)),
     ),
     Quantity(
@@ -175,6 +181,7 @@ QUANTITIES: tuple[Quantity, ...] = (
             title="Vibration dose value of one event over the floor",
             word="VDV",
         ),
+        joined="dose",
         measure=lambda h: vibration_dose_value(h.felt, h.sampling_frequency),
     ),
     Quantity(
@@ -182,6 +189,7 @@ QUANTITIES: tuple[Quantity, ...] = (
         units="m/s2",
         long_name="RMS of weighted acceleration over the record",
         stored=False,
+        joined="rms",
         measure=lambda h: np.sqrt(np.mean(h.felt**2, axis=-1)),
     ),
     Quantity(

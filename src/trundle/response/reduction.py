@@ -24,7 +24,15 @@ from trundle.signals import (
 )
 from trundle.simulate import MeanResponse, Runs
 
-__all__ = ["RunLevels", "join", "percentile_interval", "reduce_on_scaled_roads", "reduce_runs"]
+__all__ = [
+    "RunLevels",
+    "felt_of",
+    "histories_of",
+    "join",
+    "percentile_interval",
+    "reduce_on_scaled_roads",
+    "reduce_runs",
+]
 
 _TOGETHER = 16  # runs whose filtered histories are held at once: they stay in cache
 
@@ -115,32 +123,68 @@ def reduce_runs(
     curves : sequence of CurveLimit
         What is watched: for how long levels lie above.
     """
-    fs, seen = runs.sampling_frequency, record or slice(None)
-    moved = np.moveaxis(runs.acceleration, 1, -1)
-    sideways = list(runs.horizontal if horizontal is None else horizontal)
-    felt = weight(moved, fs, "Wb")
-    if sideways:
-        felt[:, sideways] = weight(moved[:, sideways], fs, "Wd")
-    felt = felt[..., seen]
-    base = np.full(len(runs.point_names), BASE_ACCELERATION)
-    base[sideways] = BASE_SIDEWAYS
+    felt, base = felt_of(runs, horizontal)
     wanted: dict[SpectrumQuantity, None] = dict.fromkeys(quantities)
     wanted.pop("band_rms_velocity", None)
-    histories = Histories(
-        time=runs.time[seen],
-        sampling_frequency=fs,
-        acceleration=runs.acceleration[:, seen],
-        velocity=runs.velocity[:, seen],
-        felt=felt,
-        base=base,
-        contact_forces=runs.contact_forces,
-        lifts=runs.lifting,
-    )
+    histories = histories_of(runs, felt, base, record or slice(None))
     return RunLevels(
         numbers={quantity.name: quantity.measure(histories) for quantity in QUANTITIES},
         spectra=spectra_of(runs, "band_rms_velocity", averaging=averaging, record=record),
         more={name: spectra_of(runs, name, averaging=averaging, record=record) for name in wanted},
-        above=_above(runs, felt, curves) if curves else {},
+        above=_above(runs, histories.felt, curves) if curves else {},
+    )
+
+
+def felt_of(
+    runs: Runs, horizontal: Sequence[int] | None = None
+) -> tuple[Float[Array, "runs points steps"], Float[Array, " points"]]:
+    """Return acceleration weighted as people feel it, and what has a response factor of 1 [m/s2].
+
+    Parameters
+    ----------
+    runs : Runs
+        Runs with histories.
+    horizontal : sequence of int, optional
+        Points that move sideways, see `reduce_runs`.
+    """
+    fs, moved = runs.sampling_frequency, np.moveaxis(runs.acceleration, 1, -1)
+    sideways = list(runs.horizontal if horizontal is None else horizontal)
+    felt = weight(moved, fs, "Wb")
+    if sideways:
+        felt[:, sideways] = weight(moved[:, sideways], fs, "Wd")
+    base = np.full(len(runs.point_names), BASE_ACCELERATION)
+    base[sideways] = BASE_SIDEWAYS
+    return felt, base
+
+
+def histories_of(
+    runs: Runs,
+    felt: Float[Array, "runs points steps"],
+    base: Float[Array, " points"],
+    seen: slice,
+) -> Histories:
+    """Return what single numbers are measured on: the steps of some runs that are looked at.
+
+    Parameters
+    ----------
+    runs : Runs
+        Runs with histories.
+    felt : ndarray of float, shape (n_runs, n_points, n_steps)
+        Weighted acceleration, see `felt_of` [m/s2].
+    base : ndarray of float, shape (n_points,)
+        What has a response factor of 1 [m/s2].
+    seen : slice
+        The steps.
+    """
+    return Histories(
+        time=runs.time[seen],
+        sampling_frequency=runs.sampling_frequency,
+        acceleration=runs.acceleration[:, seen],
+        velocity=runs.velocity[:, seen],
+        felt=felt[..., seen],
+        base=base,
+        contact_forces=runs.contact_forces,
+        lifts=runs.lifting,
     )
 
 

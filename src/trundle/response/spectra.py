@@ -78,6 +78,7 @@ def spectra_of(
     *,
     averaging: Averaging = "max_1s",
     record: slice | None = None,
+    goes_on: tuple[bool, bool] = (False, False),
 ) -> BandSpectra:
     """Form a spectrum of every run at every point.
 
@@ -91,6 +92,8 @@ def spectra_of(
         Averaging rule of RMS values.
     record : slice, optional
         Steps that are looked at, see `signals.band_maxima`.
+    goes_on : tuple of two bool
+        Whether the record goes on before and behind them.
 
     Returns
     -------
@@ -100,7 +103,7 @@ def spectra_of(
     signal = np.moveaxis(getattr(runs, quantity.rpartition("_")[2]), 1, -1)
     fs = runs.sampling_frequency
     if quantity == "narrow_band_acceleration":
-        lines, values = amplitude_spectrum(signal[..., record or slice(None)], fs)
+        lines, values = amplitude_spectrum(signal[..., record or slice(None)], fs, goes_on=goes_on)
         frequencies, resolved = lines[1:], lines[1:] <= min(runs.f_max, 0.4 * fs)
         values, times = values[..., 1:], np.full_like(values[..., 1:], np.nan)
     else:
@@ -111,9 +114,11 @@ def spectra_of(
         if resolved.any():
             bands = frequencies[resolved]
             levels, when = (
-                band_peaks(signal, fs, bands, record=record)
+                band_peaks(signal, fs, bands, record=record, goes_on=goes_on[1])
                 if quantity == "band_peak_acceleration"
-                else band_maxima(signal, fs, bands, averaging=averaging, record=record)
+                else band_maxima(
+                    signal, fs, bands, averaging=averaging, record=record, goes_on=goes_on[1]
+                )
             )
             values[:, :, resolved] = np.moveaxis(levels, 0, -1)
             times[:, :, resolved] = np.moveaxis(when, 0, -1)

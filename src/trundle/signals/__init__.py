@@ -22,12 +22,13 @@ from trundle.signals.levels import (
     band_maxima,
     band_peaks,
     level_scatter,
+    running_mean_square,
     running_rms,
 )
-from trundle.signals.psd import amplitude_spectrum, welch_psd
+from trundle.signals.psd import amplitude_spectrum, welch_psd, window_psds
 from trundle.signals.record import Axis, Record, RecordQuantity, axis_of, channel_fault
 from trundle.signals.record_doubts import doubtful_channels, record_warnings
-from trundle.signals.record_motion import motion_of, wide_motion_of
+from trundle.signals.record_motion import Section, motion_of, record_sections, wide_motion_of
 from trundle.signals.weighting import (
     BASE_ACCELERATION,
     BASE_SIDEWAYS,
@@ -53,6 +54,7 @@ __all__ = [
     "Isolator",
     "Record",
     "RecordQuantity",
+    "Section",
     "TransmissibilityTable",
     "Weighting",
     "amplitude_spectrum",
@@ -77,8 +79,10 @@ __all__ = [
     "motion_of",
     "mtvv",
     "nominal_frequency",
+    "record_sections",
     "record_warnings",
     "response_factor",
+    "running_mean_square",
     "running_rms",
     "usable_bands",
     "vibration_dose_value",
@@ -86,4 +90,5 @@ __all__ = [
     "weighting_response",
     "welch_psd",
     "wide_motion_of",
+    "window_psds",
 ]

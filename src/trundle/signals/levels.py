@@ -28,6 +28,7 @@ __all__ = [
     "band_maxima",
     "band_peaks",
     "level_scatter",
+    "running_mean_square",
     "running_rms",
 ]
 
@@ -85,17 +86,34 @@ def _largest(
     if averaging == "event":
         rms = np.asarray(np.sqrt(np.mean(samples**2, axis=-1)))
         return rms, np.full_like(rms, np.nan)
-    if averaging == "max_1s":
-        width = max(1, round(_WINDOW * sampling_frequency))
-        mean_square, back = _energy(samples, width) / width, 0.5 * _WINDOW
-    else:
-        back = _TIME_CONSTANT[averaging]
-        decay = np.exp(-1.0 / (back * sampling_frequency))
-        mean_square = signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1)
+    mean_square, back = running_mean_square(samples, sampling_frequency, averaging)
     at = np.asarray(mean_square.argmax(axis=-1))
     largest = np.take_along_axis(mean_square, at[..., None], axis=-1)[..., 0]
     when = np.asarray(np.maximum(at / sampling_frequency - back, 0.0))
     return np.asarray(np.sqrt(largest)), when
+
+
+def running_mean_square(
+    samples: Float[Array, "... steps"], sampling_frequency: float, averaging: Averaging
+) -> tuple[Float[Array, "... steps"], float]:
+    """Return the running mean square by a rule, and how far back its time lies [s].
+
+    Parameters
+    ----------
+    samples : ndarray of float, shape (..., n_steps)
+        Signals in time, at rest before.
+    sampling_frequency : float
+        Samples per second [Hz].
+    averaging : {"max_1s", "slow", "fast", "event"}
+        Rule; an average over the whole event does not run, and the linear one over 1 s is taken.
+    """
+    if averaging in _TIME_CONSTANT:
+        back = _TIME_CONSTANT[averaging]
+        decay = np.exp(-1.0 / (back * sampling_frequency))
+        return signal.lfilter([1.0 - decay], [1.0, -decay], samples**2, axis=-1), back
+    width = max(1, round(_WINDOW * sampling_frequency))
+    mean_square, back = _energy(samples, width) / width, 0.5 * _WINDOW
+    return mean_square, back
 
 
 def band_levels(
@@ -125,6 +143,7 @@ def band_maxima(
     averaging: Averaging = "max_1s",
     zero_phase: bool = False,
     record: slice | None = None,
+    goes_on: bool = False,
 ) -> tuple[Float[Array, "bands ..."], Float[Array, "bands ..."]]:
     """Return band levels as `band_levels` does, and when they occur.
 
@@ -143,6 +162,8 @@ def band_maxima(
     record : slice, optional
         Samples that are looked at; those before and behind it fill and empty the filters. All
         unless given.
+    goes_on : bool
+        The record goes on behind what is looked at, which ends there: no filter rings out.
 
     Returns
     -------
@@ -156,11 +177,11 @@ def band_maxima(
     def level(f: float) -> tuple[Array, Array]:
         """Return the level in one band, and its time."""
         padded = samples
-        if averaging != "event":
+        if averaging != "event" and not goes_on:
             padded = _ringing_out(samples, sampling_frequency, f, record)
         filtered = _filtered(padded, sampling_frequency, f, zero_phase=zero_phase)
         if record is not None:
-            stop = record.stop if averaging == "event" else None
+            stop = record.stop if averaging == "event" or goes_on else None
             filtered = filtered[..., record.start : stop]
         rms, when = _largest(filtered, sampling_frequency, averaging)
         delay = 0.0 if zero_phase else band_delay(f, sampling_frequency)
@@ -177,17 +198,20 @@ def band_peaks(
     mid_band: Float[Array, " bands"],
     *,
     record: slice | None = None,
+    goes_on: bool = False,
 ) -> tuple[Float[Array, "bands ..."], Float[Array, "bands ..."]]:
     """Return the largest absolute value of each signal in each band, and when it occurs [s].
 
-    Behind the record the filters ring on as in `band_levels`; `record` as in `band_maxima`.
+    Behind the record the filters ring on as in `band_levels`; `record` and `goes_on` as in
+    `band_maxima`.
     """
 
     def peak(f: float) -> tuple[Array, Array]:
         """Return the largest value in one band, and its time."""
-        padded = _ringing_out(samples, sampling_frequency, f, record)
+        padded = samples if goes_on else _ringing_out(samples, sampling_frequency, f, record)
         size = np.abs(_filtered(padded, sampling_frequency, f, zero_phase=False))
-        size = size if record is None else size[..., record.start :]
+        if record is not None:
+            size = size[..., record.start : record.stop if goes_on else None]
         when = size.argmax(axis=-1) / sampling_frequency - band_delay(f, sampling_frequency)
         return np.asarray(size.max(axis=-1)), np.asarray(np.maximum(when, 0.0))
 

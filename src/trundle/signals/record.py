@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -76,6 +77,8 @@ class Record:
         Directions of the channels; as their names say unless given.
     notes : tuple of FitnessWarning
         What was passed over or made good when it was read.
+    begin : datetime or None
+        Local time of the first sample; of year 1 where only the time of day is known.
     """
 
     samples: Float[Array, "channels steps"]
@@ -85,6 +88,7 @@ class Record:
     source: str = "record"
     axes: tuple[Axis, ...] = ()
     notes: tuple[FitnessWarning, ...] = ()
+    begin: datetime | None = None
 
     def __post_init__(self) -> None:
         """Refuse samples that are no record: not finite, too few, a channel that never moves."""

@@ -34,10 +34,8 @@ def record_warnings(record: Record) -> tuple[FitnessWarning, ...]:
     for doubt in (_held, _spikes):
         found += [w for name, row in _rows(record) for w in doubt(name, row, fs)]
     found += _range(record)
-    felt = _felt(record)
-    found += [
-        w for n, row in zip(record.channel_names, felt, strict=True) for w in _ends(n, row, fs)
-    ]
+    for name, row in _rows(record):
+        found += _ends(name, _felt(row, record), fs)
     return tuple(found)
 
 
@@ -190,15 +188,14 @@ def _range(record: Record) -> list[FitnessWarning]:
     return found
 
 
-def _felt(record: Record) -> Array:
-    """Return the velocity within the bands: a hum above them hides no event."""
-    fs, n = record.sampling_frequency, record.samples.shape[1]
+def _felt(row: Array, record: Record) -> Array:
+    """Return a channel's velocity within the bands: a hum above them hides no event."""
+    fs, n = record.sampling_frequency, len(row)
     f = np.fft.rfftfreq(n, 1.0 / fs)
     passed = ((f >= _FELT[0]) & (f <= _FELT[1])).astype(float)
     if record.quantity == "acceleration":
         passed[1:] /= f[1:]
-    level = record.samples - record.samples.mean(axis=1, keepdims=True)
-    return np.fft.irfft(np.fft.rfft(level, axis=1) * passed, n, axis=1)
+    return np.fft.irfft(np.fft.rfft(row - row.mean()) * passed, n)
 
 
 def _loudest(row: Array, fs: float) -> float:

@@ -12,10 +12,9 @@ from trundle.criteria import find_criterion
 from trundle.records.assess import Simulated, assess_record
 from trundle.report import write_record_report
 from trundle.report.figures import record as figures
-from trundle.report.html import template
+from trundle.report.pages.record import record_page
 from trundle.signals import Record
 from trundle.units import MICROMETRE_PER_SECOND
-from trundle.views.record import record_rows
 
 RATE = 400.0
 TIME = np.arange(0.0, 16.0, 1.0 / RATE)
@@ -41,11 +40,7 @@ def result():
 
 @pytest.fixture(scope="module")
 def page(result):
-    return Page(
-        template("record.html.j2").render(
-            result=result, record=result.record, rows=record_rows(result), pictures=[], version="9"
-        )
-    )
+    return Page(record_page(result, []))
 
 
 def line_named(axes, name):
@@ -183,11 +178,7 @@ def test_bands_that_the_record_does_not_show_are_named():
     slow = record_of()
     slow = replace(slow, samples=slow.samples[:, ::8], sampling_frequency=RATE / 8)
     found = assess_record(slow, [find_criterion("VC-A")])
-    shown = Page(
-        template("record.html.j2").render(
-            result=found, record=slow, rows=record_rows(found), pictures=[], version="9"
-        )
-    )
+    shown = Page(record_page(found, []))
     row = shown.rows("verdict")[0]
     assert row["verdict"] == "not assessed"
     missing = row["not shown [Hz]"].split(", ")
@@ -205,7 +196,8 @@ def test_the_folder_has_levels_verdicts_and_pictures(result, tmp_path):
     path = write_record_report(result, tmp_path)
     written = Page(path.read_text(encoding="utf-8"))
     assert [image["alt"].partition(".")[0] for image in written.images] == [
-        "Velocity spectra on criteria", "Motion in time",
+        "Velocity spectra on criteria", "Levels exceeded for shares of the time",
+        "Running RMS and events", "Power spectral density", "Spectrogram", "Motion in time",
     ]  # fmt: skip
     with (tmp_path / "levels.csv").open(encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
@@ -231,10 +223,10 @@ def test_channels_that_are_not_drawn_are_told():
     tones = tuple((10.0 + i, 4e-5) for i in range(8))
     names = tuple(f"c{i}" for i in range(8))
     result = assess_record(record_of(tones, names, ("vertical",) * 8), [find_criterion("VC-A")])
-    spectra, history = figures.drawings(result)
+    spectra, *others, history = figures.drawings(result)
     (axes,) = spectra.draw().axes
     assert {line.get_label() for line in axes.lines} & set(names) == set(names[:6])
-    for drawing in (spectra, history):
+    for drawing in (spectra, *others, history):
         assert "of the first 6 of 8 channels" in drawing.caption
 
 

@@ -102,6 +102,7 @@ def assess(
     sensitivity: options.Sensitivity = "",
     full_scale: options.FullScale = "",
     channel: options.Channel = "",
+    start: options.Start = "",
     criteria: options.Criteria = "",
     shape: options.Shape = "rising",
     averaging: options.Averaging = "max_1s",
@@ -125,7 +126,12 @@ def assess(
     from trundle.records import RecordOptions
 
     said = RecordOptions(
-        unit=unit, rate=rate, sensitivity=sensitivity, full_scale=full_scale, channel=channel
+        unit=unit,
+        rate=rate,
+        sensitivity=sensitivity,
+        full_scale=full_scale,
+        channel=channel,
+        start=start,
     )
     unmet = assess_command.assess(
         files,

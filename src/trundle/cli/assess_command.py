@@ -10,6 +10,7 @@ from typing import Any, get_args
 import numpy as np
 
 from trundle._checks import one_of
+from trundle._progress import Tell
 from trundle.cli.fail_on import check_fail_on, say_unmet
 from trundle.cli.quantities import quantity_of
 from trundle.cli.saying import say
@@ -24,10 +25,14 @@ from trundle.results.results_folder import check_target, new_results_folder
 from trundle.signals import Averaging, Record
 from trundle.study_file.user_criteria import read_criteria
 from trundle.views.record import record_rows
+from trundle.views.record_answer import answers
+from trundle.views.record_survey import dose_rows, event_rows
 
 __all__ = ["assess"]
 
 _LARGE = 10e6  # bytes: less is assessed in a moment
+_MOST_EVENTS = 20  # on the screen
+_LEVELS = 0.8  # of the time, for levels; figures take the rest
 
 
 def assess(
@@ -79,18 +84,22 @@ def assess(
     unmet, said = False, list[dict[str, Any]]()
     for record, place in zip(records, places, strict=True):
         with progress_bar(quiet=quick or show == "nothing") as tell:
-            tell(f"levels of {record.source}", 0.0)
             result = assess_record(
-                record, curves, averaging=rule, high_pass=limit, events=events, simulated=simulated
-            )
-            tell(f"figures of {record.source}", 0.8)
+                record, curves, averaging=rule, high_pass=limit, events=events,
+                simulated=simulated, tell=_part(tell, 0.0, _LEVELS),
+            )  # fmt: skip
             with new_results_folder(place, kind="record") as folder:
-                write_record_report(result, folder)
+                write_record_report(result, folder, tell=_part(tell, _LEVELS, 1.0))
         said.append(_said(result, place, show))
         unmet |= say_unmet(fail_on, show, ((f"{record.source}, ", v) for v in result.verdicts))
     if show == "json":
         say_json(said)
     return unmet
+
+
+def _part(tell: Tell, low: float, high: float) -> Tell:
+    """Return what tells the share of one part of the work as that of all."""
+    return lambda what, share: tell(what, low + (high - low) * share)
 
 
 def _said(result: RecordResult, place: Path, show: Show) -> dict[str, Any]:
@@ -118,6 +127,8 @@ def _curves(text: str) -> tuple[Criterion, ...]:
 
 def _print(result: RecordResult) -> None:
     record = result.record
+    for answer in answers(result):
+        say(answer.words)
     print_table(
         f"{record.source}: {record.duration:.4g} s of {record.quantity} at "
         f"{record.sampling_frequency:g} Hz",
@@ -148,8 +159,49 @@ def _print(result: RecordResult) -> None:
         ),
         text_columns=4,
     )
+    _print_events(result)
     reasons = (r for v in result.verdicts if v.status == "not assessed" for r in v.reasons)
     for reason in dict.fromkeys(reasons):
         say(f"not assessed: {reason}")
     for warning in result.warnings:
         say(f"warning: {warning}")
+
+
+def _print_events(result: RecordResult) -> None:
+    """Print the first events, by which rule they were found, and doses of days and nights."""
+    rows = event_rows(result)
+    if rows:
+        first = f", the first {_MOST_EVENTS}" if len(rows) > _MOST_EVENTS else ""
+        print_table(
+            f"{len(rows)} event{'' if len(rows) == 1 else 's'}{first}",
+            ("channel", "start [s]", "end [s]", "clock", "level [um/s]", "band [Hz]", "margin"),
+            (
+                (
+                    str(row["channel"]),
+                    f"{row['start_s']:.1f}",
+                    f"{row['end_s']:.1f}",
+                    str(row["clock"]),
+                    *(
+                        "" if np.isnan(row[name]) else f"{row[name]:.3g}"
+                        for name in ("level_um_s", "band_hz", "margin")
+                    ),
+                )
+                for row in rows[:_MOST_EVENTS]
+            ),
+        )
+    for one in result.events:
+        say(f"events of {one.channel}: {len(one.events)}; {one.rule}")
+    if result.record.begin is not None:
+        print_table(
+            "Vibration dose of what was measured",
+            ("channel", "period", "measured [h]", "of [h]", "VDV [m/s^1.75]"),
+            (
+                (
+                    str(row["channel"]),
+                    str(row["period"]),
+                    *(f"{row[name]:.3g}" for name in ("measured_h", "of_h", "vdv")),
+                )
+                for row in dose_rows(result)
+            ),
+            text_columns=2,
+        )

@@ -28,6 +28,7 @@ __all__ = [
     "Sensitivity",
     "Shape",
     "Simulation",
+    "Start",
     "Unit",
     "Yes",
 ]
@@ -87,6 +88,10 @@ Channel = Annotated[
         "--channel",
         help="Channels to assess: names, numbers from 1, units or vertical, between commas.",
     ),
+]
+Start = Annotated[
+    str,
+    typer.Option("--start", help="Local time of the first sample: '22:30', '2024-05-03 22:30'."),
 ]
 Criteria = Annotated[
     str,

@@ -8,26 +8,28 @@ import numpy as np
 
 from trundle import __version__
 from trundle.records.assess import RecordResult
-from trundle.signals import crest_factor, nominal_frequency
+from trundle.signals import nominal_frequency
 from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.views.record_answer import answers
+from trundle.views.record_survey import dose_rows, event_rows
 
 __all__ = ["level_rows", "record_rows", "record_summary"]
 
 
 def record_rows(result: RecordResult) -> list[dict[str, Any]]:
     """Return single numbers of every channel, in engineers' units."""
-    runs, reduced = result.runs, result.reduced
+    reduced = result.reduced
     return [
         {
             "channel": name,
             "peak_gal": float(reduced.peak_acceleration[0, i]) / GAL,
             "peak_time_s": float(reduced.peak_time[0, i]),
             "rms_um_s": float(reduced.rms_velocity[0, i]) / MICROMETRE_PER_SECOND,
-            "crest_factor": float(crest_factor(runs.acceleration[0, :, i])),
+            "crest_factor": float(result.survey.crest_factor[i]),
             "response_factor": float(reduced.response_factor[0, i]),
             "vdv": float(reduced.vdv[0, i]),
         }
-        for i, name in enumerate(runs.point_names)
+        for i, name in enumerate(result.record.channel_names)
     ]
 
 
@@ -39,6 +41,19 @@ def record_summary(result: RecordResult) -> dict[str, Any]:
         "source": result.record.source,
         "averaging": result.averaging,
         "high_pass_hz": result.high_pass,
+        "answers": [
+            {
+                "channel": one.channel,
+                "sentence": one.words,
+                "class": one.met or None,
+                "verdict": one.status,
+                "margin": one.margin,
+                "governing_band_hz": one.governing_band,
+                "not_assessed_below_hz": one.below,
+                "not_assessed_above_hz": one.above,
+            }
+            for one in answers(result)
+        ],
         "channels": record_rows(result),
         "verdicts": [
             {
@@ -56,6 +71,9 @@ def record_summary(result: RecordResult) -> dict[str, Any]:
             }
             for v in result.verdicts
         ],
+        "events": event_rows(result),
+        "event_rules": {one.channel: one.rule for one in result.events},
+        "vibration_doses": dose_rows(result),
         "warnings": [str(warning) for warning in result.warnings],
     }
 

@@ -167,3 +167,32 @@ def test_criteria_come_by_name_and_from_files_in_their_order(tmp_path):
     assert assess_command._curves(" , ") == VC
     with pytest.raises(InputError, match="no criterion"):
         assess_command._curves("VC-A VC-C")
+
+
+def test_the_answer_stands_first_and_in_json(command):
+    """30 um/s at 10 Hz meets VC-A (50) with 1.67 and exceeds VC-B (25): the first line says both."""
+    code, said = command("loud.csv", "-c", "VC-A,VC-B,VC-C")
+    assert code == 0
+    first = said.out.splitlines()[0]
+    assert first.startswith("channel z: VC-A is met with margin 1.6")
+    assert "; governing 10 Hz; VC-B is exceeded (margin 0.83" in first
+    assert "events of z: " in said.out
+    _, said = command("loud.csv", "-c", "VC-A,VC-B,VC-C", "--json")
+    (answer,) = json.loads(said.out)[0]["answers"]
+    assert (answer["channel"], answer["class"], answer["verdict"]) == ("z", "VC-A", "pass")
+    assert answer["margin"] == pytest.approx(50.0 / 30.0, rel=0.02)
+    assert answer["sentence"] == first
+
+
+def test_a_start_gives_days_and_nights_and_a_wrong_one_is_refused(command, tmp_path):
+    """From 22:59:50, 20 s: 10 s of day and 10 s of night."""
+    code, said = command("loud.csv", "-c", "VC-A", "--start", "2024-05-03 22:59:50", "--json")
+    assert code == 0
+    doses = json.loads(said.out)[0]["vibration_doses"]
+    assert [d["period"][:5] for d in doses] == ["day, ", "night"]
+    assert [3600.0 * d["measured_h"] for d in doses] == pytest.approx([10.0, 10.0])
+    assert doses[0]["vdv"] == pytest.approx(doses[1]["vdv"], rel=0.05)
+    code, said = command("loud.csv", "--start", "yesterday", "--out", "other")
+    assert code == 2
+    assert "--start 'yesterday': must be a local time" in said.err
+    assert not (tmp_path / "other").exists()

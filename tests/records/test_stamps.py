@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from trundle.errors import InputError
-from trundle.records.stamps import clock_seconds, even_rate, is_stamp, on_even_time
+from trundle.records.stamps import clock_begin, clock_seconds, even_rate, is_stamp, on_even_time
 
 PATH = Path("logger.csv")
 
@@ -146,3 +146,24 @@ def test_samples_at_stray_stamps_are_put_on_an_even_time():
     np.testing.assert_allclose(samples[0], 1.0 + 2 * even - 3 * even**2 + 0.5 * even**3, rtol=1e-9)
     assert np.isnan(samples[1]).all()
     assert f"{1e3 * np.abs(time - even).max():.3g} ms from an even time" in note
+
+
+@pytest.mark.parametrize(
+    ("columns", "begin"),
+    [
+        (
+            [["2024-05-03 22:59:50.5", "2024-05-03 22:59:50.6"]],
+            datetime(2024, 5, 3, 22, 59, 50, 500000),
+        ),
+        ([["03.05.2024", "03.05.2024"], ["08:00:00", "08:00:01"]], datetime(2024, 5, 3, 8)),
+        ([["23:59:59", "00:00:00"]], datetime(1, 1, 2, 23, 59, 59)),
+        ([["11:00:00 PM", "11:00:01 PM"]], datetime(1, 1, 2, 23)),
+        ([["2024-05-03T22:00:00Z", "2024-05-03T22:00:01Z"]], None),
+        ([["2024-05-03", "2024-05-04"]], None),
+        ([["25:00:00", "25:00:01"]], None),
+        ([["99/99/2024 10:00:00", "99/99/2024 10:00:01"]], None),
+    ],
+)
+def test_the_time_of_the_first_stamp_is_known_where_it_is_told(columns, begin):
+    """By date or by time of day; not by Greenwich's clock, a date alone, or what is no time."""
+    assert clock_begin(columns) == begin

@@ -236,3 +236,69 @@ def test_curves_for_other_motion_than_any_channel_s_are_not_drawn():
     result = assess_record(record_of(axes=("vertical", "")), [find_criterion("VC-A"), level])
     (axes,) = figures.record_spectra_figure(result).axes
     assert [text.get_text() for text in axes.texts] == ["VC-A"]
+
+
+def test_the_page_answers_first_and_every_curve_has_a_word_beside_its_colour(page, result):
+    """28.3 um/s meets VC-A with 1.77 and exceeds VC-B; colours are those of the words."""
+    table, looks = page.tables["answer"][0], page.classes["answer"][0]
+    assert table[0] == ["criterion", *NAMES]
+    rows = {row[0]: row[1:] for row in table[1:]}
+    assert rows["VC-A"][0].startswith("\N{CHECK MARK} pass 1.7")
+    assert rows["VC-B"][0].startswith("\N{BALLOT X} fail 0.88")
+    assert rows["Electron microscope, vertical"][1] == "\N{EN DASH} not assessed"
+    for row, look in zip(table[1:], looks[1:], strict=True):
+        for word, colour in zip(row[1:], look[1:], strict=True):
+            status = next(s for s in ("pass", "fail", "not assessed") if s in word)
+            assert status.replace(" ", "-") in colour.split()
+    text = record_page(result, [])
+    assert text.index("VC-A is met with margin 1.7") < text.index('id="verdict"')
+
+
+def test_events_stand_on_the_page_and_in_their_file_as_they_are_found(tmp_path):
+    """A tone of 4 s amid a hundredth of it: one event of each channel, cut by no end of the record.
+
+    The first exceeds VC-B, the second stands 6 dB above its median; a filter's answer to the sudden
+    beginning overshoots by some percent.
+    """
+    gate = np.where((TIME >= 6.0) & (TIME < 10.0), 1.0, 0.01)
+    samples = np.array([a * gate * np.sin(20.0 * np.pi * TIME) for a in (40e-6, 8e-6)])
+    result = assess_record(replace(record_of(), samples=samples), [find_criterion("VC-B")])
+    write_record_report(result, tmp_path)
+    with (tmp_path / "events.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    shown = Page(record_page(result, [])).rows("events")
+    assert [row["channel"] for row in rows] == [row["channel"] for row in shown] == list(NAMES)
+    for row, level in zip(rows, (28.28, 5.657), strict=True):
+        assert float(row["level_um_s"]) == pytest.approx(level, rel=0.05)
+        assert (row["band_hz"], row["criterion"], row["cut"]) == ("10", "VC-B", "")
+        assert float(row["margin"]) == pytest.approx(25.0 / level, rel=0.05)
+        assert float(row["start_s"]) == pytest.approx(6.0, abs=0.7)
+        assert float(row["end_s"]) == pytest.approx(10.0, abs=0.7)
+    assert shown[0]["largest running level [um/s]"].startswith("28.")
+
+
+def test_tables_beside_the_page_hold_what_their_headings_say(result, tmp_path):
+    """The PSD integrates to the mean square; running levels and percentiles are in um/s."""
+    write_record_report(result, tmp_path)
+
+    def table(name):
+        with (tmp_path / name).open(encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    psd = table("psd.csv")
+    f = np.array([float(row["frequency_hz"]) for row in psd])
+    values = np.array([float(row[f"{NAMES[0]} [(um/s)2/Hz]"]) for row in psd])
+    # the mean of 7 windows of 4 s, in each the mean of the faded envelope's square, weighted by Hann's
+    hann = np.hanning(int(4 * RATE)) ** 2
+    held = [hann @ FADE[int(at * RATE) :][: len(hann)] ** 2 / hann.sum() for at in range(0, 14, 2)]
+    assert values.sum() * f[1] == pytest.approx(28.28**2 * np.mean(held), rel=0.01)
+    running = table("running.csv")
+    assert max(float(row[f"{NAMES[1]} [um/s]"]) for row in running) == pytest.approx(
+        5.657, rel=0.02
+    )
+    rows = {(r["channel"], r["band_hz"]): r for r in table("percentiles.csv")}
+    own = rows[NAMES[0], "10"]
+    assert float(own["max_um_s"]) == pytest.approx(28.28, rel=0.02)
+    assert float(own["L10_um_s"]) == pytest.approx(28.28, rel=0.02)
+    assert float(own["L50_um_s"]) == pytest.approx(28.28, rel=0.02)
+    assert float(own["mean_um_s"]) == pytest.approx(28.28 * np.sqrt(12.0 / 16.0), rel=0.02)

@@ -94,8 +94,9 @@ def clock_begin(columns: list[list[str]]) -> datetime | None:
             texts = dict.fromkeys(" ".join(parts).strip() for parts in zip(*columns, strict=True))
             dates = [found["date"] for found in map(_BOTH.match, texts) if found]
             day = _days(list(dict.fromkeys(dates)))[both["date"]]
-        midnight = datetime.fromordinal(round(day / _DAY))
-        return midnight + timedelta(seconds=_seconds(clock))
+        seconds = _seconds(clock)
+        if seconds < _DAY:
+            return datetime.fromordinal(round(day / _DAY)) + timedelta(seconds=seconds)
     return None
 
 

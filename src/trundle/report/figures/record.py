@@ -48,7 +48,7 @@ def drawings(result: RecordResult) -> Iterator[Drawing]:
         name="running",
         title="Running RMS and events",
         caption=(
-            f"{_rule(running.averaging).capitalize()} of velocity of {_channels(result)}: of all "
+            f"Running {_rule(running.averaging)} of velocity of {_channels(result)}: of all "
             "motion, and in the band that is loudest. Events are shaded. A criterion's line is its "
             "limit at 8 Hz and above; below, and for all motion together, its limit is another."
         ),

@@ -268,12 +268,13 @@ def test_events_stand_on_the_page_and_in_their_file_as_they_are_found(tmp_path):
         rows = list(csv.DictReader(file))
     shown = Page(record_page(result, [])).rows("events")
     assert [row["channel"] for row in rows] == [row["channel"] for row in shown] == list(NAMES)
-    for row, level in zip(rows, (28.28, 5.657), strict=True):
+    # the second's threshold, 2 % of its level, is met while the filter of 10 Hz rings out, too
+    for row, level, late in zip(rows, (28.28, 5.657), (0.7, 1.8), strict=True):
         assert float(row["level_um_s"]) == pytest.approx(level, rel=0.05)
         assert (row["band_hz"], row["criterion"], row["cut"]) == ("10", "VC-B", "")
         assert float(row["margin"]) == pytest.approx(25.0 / level, rel=0.05)
         assert float(row["start_s"]) == pytest.approx(6.0, abs=0.7)
-        assert float(row["end_s"]) == pytest.approx(10.0, abs=0.7)
+        assert 9.5 < float(row["end_s"]) < 10.0 + late
     assert shown[0]["largest running level [um/s]"].startswith("28.")
 
 

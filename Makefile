@@ -6,11 +6,12 @@
 #                (make validate ONLY=V1 runs one case again and prints its rows)
 # make faults    put faults into a copy of the source; every one must make a test fail
 # make bench     speed, as ratios within one run
+# make dist      wheel and source archive in dist, checked as they would be published
 # make docs      the reference of all public names, as HTML in build/docs
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: help demo check test fast validate faults bench docs clean
+.PHONY: help demo check test fast validate faults bench dist docs clean
 .DEFAULT_GOAL := help
 
 help:
@@ -75,9 +76,12 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/parts.py
 	$(BIN)/python benchmarks/hundred_workers.py
 
+dist:
+	$(PYTHON) scripts/build_distributions.py
+
 docs: .venv/.ready-dev
 	$(BIN)/python -m sphinx -q -b html docs build/docs
 	@echo "reference: build/docs/index.html"
 
 clean:
-	rm -rf .venv results build
+	rm -rf .venv results build dist

@@ -44,7 +44,7 @@ def long():
     n = round(600 * FS)
     t = np.arange(n) / FS
     rows = 1e-6 * signal.lfilter([1.0], [1.0, -0.99], rng.standard_normal((2, n)), axis=1)
-    for at, f in ((128.1, 8.0), (300.0, 1.2), (598.0, 20.0)):
+    for at, f in ((140.1, 8.0), (300.0, 1.2), (598.0, 20.0)):  # seams every 140 s
         rows += 2e-4 * np.exp(-(((t - at) / 0.8) ** 2)) * np.sin(2.0 * np.pi * f * t)
     return record_of(*rows, names=("z", "x"))
 
@@ -55,6 +55,7 @@ def test_a_short_record_is_one_section_and_a_long_one_is_covered_once(long):
     assert (one.first, one.n_seen, one.begins, one.ends) == (0, long.samples.shape[1], True, True)
     many = list(record_sections(long, most=1))
     assert len(many) > 3
+    assert many[1].first == 140 * FS
     assert [s.first for s in many] == list(np.cumsum([0, *(s.n_seen for s in many)])[:-1])
     assert sum(s.n_seen for s in many) == long.samples.shape[1]
     assert [s.begins for s in many] == [True] + [False] * (len(many) - 1)

@@ -1,5 +1,6 @@
 """How a record runs: closed forms of tones and bursts; sections of a record are its whole."""
 
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -213,6 +214,20 @@ def test_a_spectrogram_shows_a_tone_when_it_sounds():
     step = gram.frequencies[0]
     np.testing.assert_allclose(loud, RMS**2 / (1.5 * step), rtol=0.02)
     assert gram.psd[0, line, middle < 28.0].max() < 1e-4 * loud.min()
+
+
+def test_a_long_record_takes_little_more_memory_than_a_short_one():
+    """Motion of an hour more would take 3 times its samples; running levels take 20 x 8 x 4 B/s, 0.4."""
+    peaks = []
+    for minutes in (15, 75):
+        record = record_of(
+            1e-5 * np.random.default_rng(1).standard_normal(round(minutes * 60 * FS))
+        )
+        tracemalloc.start()
+        surveyed(record, most=2**16)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] - peaks[0] < 0.7 * 3600 * FS * 8
 
 
 def test_integral_of_a_tone_s_fourth_power():

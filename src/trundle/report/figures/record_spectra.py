@@ -28,7 +28,7 @@ def psd_figure(result: RecordResult, most: int) -> Figure:
     figure, (axes,) = new_figure(7.2, 3.8)
     spectrum = result.survey.spectrum
     f = spectrum.frequencies
-    shown = (f >= 0.5) & (f <= 125.0)
+    shown = (f >= 0.5) & (f <= 125.0) & (f < f[-1])  # half the rate holds half a line
     for i, name in enumerate(result.record.channel_names[:most]):
         colour, dashes = line_look(i)
         values = spectrum.psd[i, shown] / MICROMETRE_PER_SECOND**2

@@ -39,8 +39,13 @@ def running_figure(result: RecordResult, most: int) -> Figure:
         ):
             time, held = _thinned(running.time / scale, level / MICROMETRE_PER_SECOND)
             panel.plot(time, held, color=COLOURS[number], linewidth=0.8, label=label)
-        for event in result.events[i].events:
-            panel.axvspan(event.start / scale, event.end / scale, color=COLOURS[4], alpha=0.25)
+        panel.broken_barh(
+            [(event.start / scale, event.duration / scale) for event in result.events[i].events],
+            (0.0, 1.0),
+            transform=panel.get_xaxis_transform(),
+            color=COLOURS[4],
+            alpha=0.25,
+        )
         panel.set(ylabel="RMS velocity [um/s]")
         make_logarithmic(panel, "y")
         _draw_limits(panel, result, i)

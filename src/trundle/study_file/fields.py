@@ -59,9 +59,14 @@ __all__ = [
 
 
 class Section(BaseModel):
-    """Base of every section: unknown keys are mistakes, values are frozen."""
+    """Base of every section: unknown keys are mistakes, values are frozen.
 
-    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+    What stands below a field says what it means; the reference of study files is made of it.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, arbitrary_types_allowed=True, use_attribute_docstrings=True
+    )
 
 
 # What no vehicle, road or floor exceeds: a value beyond is a slip of the unit or the key.

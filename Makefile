@@ -28,8 +28,8 @@ demo: .venv/.ready-run
 	$(BIN)/trundle run examples/paper/study.toml --out results/paper
 
 check: .venv/.ready-dev
-	$(BIN)/ruff format --check src tests scripts benchmarks examples docs
-	$(BIN)/ruff check src tests scripts benchmarks examples docs
+	$(BIN)/ruff format --check src tests scripts benchmarks examples docs/_ext docs/conf.py
+	$(BIN)/ruff check src tests scripts benchmarks examples docs/_ext docs/conf.py
 	$(BIN)/lint-imports --no-cache
 	$(BIN)/basedpyright --pythonpath $(BIN)/python
 	$(BIN)/python -m numpydoc lint $$(git ls-files "src/*.py")
@@ -76,7 +76,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/hundred_workers.py
 
 docs: .venv/.ready-dev
-	$(BIN)/python -m sphinx -q -W --keep-going -b html -d build/docs-kept docs build/docs
+	$(BIN)/python -m sphinx -q -W --keep-going -j auto -b html -d build/docs-kept docs build/docs
 	@echo "manual: build/docs/index.html"
 
 clean:

@@ -1,0 +1,54 @@
+"""Show formulas as MathML, which browsers draw themselves: no script, no font from elsewhere."""
+
+from __future__ import annotations
+
+from docutils import nodes
+from docutils.utils.math import latex2mathml
+from sphinx.application import Sphinx
+from sphinx.util import logging
+
+__all__ = ["as_mathml", "setup"]
+
+_LOGGER = logging.getLogger(__name__)
+
+
+def as_mathml(formula: str, *, block: bool) -> str:
+    """Return a formula of LaTeX as MathML.
+
+    Raises
+    ------
+    docutils.utils.math.MathError
+        A formula that is not understood.
+    """
+    return str(latex2mathml.tex2mathml(formula, as_block=block))
+
+
+def _show(self: object, node: nodes.Element, *, block: bool) -> None:
+    formula = node.astext()
+    if block and ("&" in formula or "\\\\" in formula) and "\\begin" not in formula:
+        formula = f"\\begin{{aligned}}{formula}\\end{{aligned}}"
+    try:
+        made = as_mathml(formula, block=block)
+    except Exception as error:  # whatever the converter trips over, the page has to say so
+        _LOGGER.warning("formula %r: %s", formula, error, location=node)
+        made = f"<code>{nodes.unescape(formula)}</code>"
+    number = node.get("number") if block else None
+    mark = f'<span class="eqno">({number})</span>' if number else ""
+    self.body.append(f'<div class="math">{mark}{made}</div>' if block else made)  # type: ignore[attr-defined]
+    raise nodes.SkipNode
+
+
+def _inline(self: object, node: nodes.Element) -> None:
+    _show(self, node, block=False)
+
+
+def _block(self: object, node: nodes.Element) -> None:
+    for name in node["ids"]:
+        self.body.append(f'<span id="{name}"></span>')  # type: ignore[attr-defined]
+    _show(self, node, block=True)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Offer the renderer to Sphinx."""
+    app.add_html_math_renderer("mathml", (_inline, None), (_block, None))
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -70,7 +70,9 @@ def _page(name: str, command: Any) -> str:
         rows = ((code(one.metavar or one.name), _said(one)[0]) for one in arguments)
         parts.append("\n## Arguments\n" + table(("argument", "what"), rows))
     rows = [*(_row(one) for one in options), ("`--help`, `-h`", "", "", "Show all this, and end.")]
-    parts.append("\n## Options\n" + table(("option", "takes", "default", "what"), rows))
+    parts.append(
+        "\n## Options\n" + table(("option", "takes", "default", "what"), rows, kind="keys")
+    )
     parts.append(_examples(name))
     return "\n".join(parts)
 

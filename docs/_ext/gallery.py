@@ -69,7 +69,7 @@ def _entry(folder: Path) -> Iterator[str]:
     text = path.read_text("utf-8")
     file, _ = read_study(path)
     yield f"\n## {file.general.title}\n\n{_said_above(text)}\n"
-    yield f"![Plan: {file.general.title}](gallery/{_picture(folder)})\n"
+    yield f"![Plan: {file.general.title}](gallery/{_picture(folder)}){{.plan}}\n"
     yield _shown(f"trundle run {path.relative_to(ROOT).as_posix()}")
     used = [kind for kind in KINDS if kind.name in file.given]
     linked = ", ".join(f"[{code(one.header)}](keys/{one.name}.md)" for one in used)

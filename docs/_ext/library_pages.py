@@ -19,6 +19,16 @@ _UNITS = {
     "vdv": (1.0, "m/s1.75"),
     "response_factor": (1.0, ""),
 }
+_TITLES = {
+    "band_rms_velocity": "RMS velocity in one-third octaves",
+    "band_rms_acceleration": "RMS acceleration in one-third octaves",
+    "band_rms_displacement": "RMS displacement in one-third octaves",
+    "band_peak_acceleration": "Peak acceleration in one-third octaves",
+    "narrow_band_acceleration": "Acceleration on lines of 1 Hz",
+    "peak_acceleration": "Peak acceleration of the whole signal",
+    "response_factor": "Response factor of people",
+    "vdv": "Vibration dose value",
+}
 _SHOWN_FREQUENCIES = 3
 
 
@@ -33,7 +43,7 @@ def _criteria() -> str:
     ordered = sorted(all_criteria(), key=lambda one: one.quantity)
     for quantity, some in groupby(ordered, key=lambda one: one.quantity):
         rows = [_criterion(one) for one in some]
-        parts.append(f"\n## {quantity.replace('_', ' ').capitalize()}\n")
+        parts.append(f"\n## {_TITLES[quantity]}\n")
         parts.append(table(("name", "title", "limits", "axis", "source and confidence"), rows))
     return "\n".join(parts)
 
@@ -62,14 +72,18 @@ def _limits(one: Criterion) -> str:
 
 def _vehicles() -> str:
     made = {name: build() for name, build in VEHICLES.items()}
-    sources = {one.source: f"{i}" for i, one in enumerate(_distinct(made), start=1)}
-    head = ("name", "what", "mass [t]", "axles [m]", "loads [t]", "f [Hz]", "trust", "source")
+    sources = {source: i for i, source in enumerate(_sources(made), start=1)}
+    head = ("vehicle", "mass [t]", "axles [m]", "loads [t]", "f [Hz]", "trust (source)")
     rows = (_vehicle(name, one, sources[one.source]) for name, one in made.items())
     listed = [f"{number}. {source}" for source, number in sources.items()]
     parts = ["# Vehicles\n", _VEHICLES, table(head, rows, kind="wide")]
     return "\n".join(
         [*parts, "\n## Sources\n", *listed, "", "## What is assumed\n", _assumed(made)]
     )
+
+
+def _sources(made: dict[str, Vehicle]) -> list[str]:
+    return list(dict.fromkeys(one.source for one in made.values()))
 
 
 _VEHICLES = """\
@@ -79,21 +93,16 @@ first natural frequencies on rigid ground. Trust: *high*, read in the source; *m
 """
 
 
-def _distinct(made: dict[str, Vehicle]) -> list[Vehicle]:
-    return list({one.source: one for one in made.values()}.values())
-
-
-def _vehicle(name: str, one: Vehicle, source: str) -> tuple[str, ...]:
+def _vehicle(name: str, one: Vehicle, source: int) -> tuple[str, ...]:
     axles, loads = _axles(one)
+    trust = re.split(r"[:;,(]", one.confidence)[0].strip()
     return (
-        code(name),
-        one.name,
+        f"{code(name)}<br>{one.name}",
         f"{one.total_mass / 1e3:.2f}",
         ", ".join(f"{x:.2f}" for x in axles),
         ", ".join(f"{load:.2f}" for load in loads),
         ", ".join(f"{f:.2f}" for f in one.natural_frequencies()[:_SHOWN_FREQUENCIES]),
-        re.split(r"[:;,(]", one.confidence)[0].strip(),
-        source,
+        f"{trust} ({source})",
     )
 
 

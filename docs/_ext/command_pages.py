@@ -21,6 +21,7 @@ _CODES = (
     (NOT_MET, "a criterion of `--fail-on` is failed, or not assessed"),
     (INTERRUPTED, "stopped by Ctrl-C"),
 )
+_BLOCK = re.compile(r"^```([^\n]*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _DEFAULT = re.compile(r"\s*\[default: (.*?)\]\s*$")
 
 
@@ -131,8 +132,6 @@ def _lines() -> tuple[str, ...]:
     """Return all lines of commands in README and pages that people have written."""
     pages = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
     texts = [page.read_text("utf-8") for page in pages]
-    blocks = [
-        block for text in texts for block in re.findall(r"```(?:sh)?\n(.*?)```", text, re.DOTALL)
-    ]
+    blocks = [block for text in texts for kind, block in _BLOCK.findall(text) if kind in {"", "sh"}]
     lines = [line.strip().removeprefix("$ ") for block in blocks for line in block.splitlines()]
     return tuple(line for line in lines if line.startswith("trundle "))

@@ -72,7 +72,7 @@ def _page(module: ModuleType) -> str:
     names = [one for one in public_names(module) if not one.startswith("__")]
     homes = {one: home_of(one, getattr(module, one)) for one in names}
     parts = [f"# {name}\n", f"```{{eval-rst}}\n.. automodule:: {name}\n   :no-members:\n```\n"]
-    parts.append(table(("name", ""), (_row(module, one, home) for one, home in homes.items())))
+    parts.append(table(("name", "what"), (_row(module, one, home) for one, home in homes.items())))
     parts.append("\n```{eval-rst}")
     for one, home in homes.items():
         parts += _directive(f"{name}.{one}", getattr(module, one)) if home == name else []
@@ -99,11 +99,14 @@ def _directive(name: str, value: object) -> list[str]:
         return [f".. autoexception:: {name}", "   :members:", ""]
     if isinstance(value, type):
         return [f".. autoclass:: {name}", "   :members:", ""]
+    if inspect.isroutine(value):
+        return [f".. autofunction:: {name}", ""]
+    said = alias_words(name.rpartition(".")[2], value).replace("\n", "\n   ")
     if get_origin(value) is not None:
-        said = alias_words(name.rpartition(".")[2], value).replace("\n", "\n   ")
         return [f".. py:type:: {name}", f"   :canonical: {_shown(value)}", "", f"   {said}", ""]
-    kind = "autofunction" if inspect.isroutine(value) else "autodata"
-    return [f".. {kind}:: {name}", *(["   :no-value:"] if kind == "autodata" else []), ""]
+    number = isinstance(value, int | float | str)
+    shown = [f"   :value: {value!r}"] if number else []
+    return [f".. py:data:: {name}", *shown, "", f"   {said}", ""]
 
 
 def _shown(alias: object) -> str:

@@ -58,7 +58,7 @@ def chain() -> str:
 
 
 def stack(rows: Sequence[str]) -> str:
-    """Draw layers on each other; those side by side never import each other."""
+    """Draw layers on each other, packages of one layer side by side."""
     height, gap, width = 40, 8, 620
     parts: list[str] = []
     for i, row in enumerate(rows):

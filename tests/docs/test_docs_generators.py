@@ -160,12 +160,14 @@ def test_aliases_and_constants_have_the_words_below_them():
 
 
 def test_kinds_of_names_are_told_apart():
-    from trundle import criteria
+    from trundle import criteria, units
 
     assert api_pages._directive("a.b", InputError)[0] == ".. autoexception:: a.b"
     assert api_pages._directive("a.b", criteria.Criterion)[0] == ".. autoclass:: a.b"
     assert api_pages._directive("a.b", criteria.assess)[0] == ".. autofunction:: a.b"
-    assert api_pages._directive("a.b", criteria.VC)[0] == ".. autodata:: a.b"
+    constant = api_pages._directive("trundle.units.KMH", units.KMH)
+    assert constant[:2] == [".. py:data:: trundle.units.KMH", f"   :value: {units.KMH!r}"]
+    assert constant[3].startswith("   One kilometre per hour")
     assert ".. py:type:: trundle.criteria.Shape" in api_pages._directive(
         "trundle.criteria.Shape", criteria.Shape
     )

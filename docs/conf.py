@@ -38,7 +38,6 @@ html_show_sourcelink = False
 default_role = "py:obj"
 numpydoc_show_class_members = False
 numpydoc_xref_param_type = False
-autodoc_default_options = {"members": True, "undoc-members": False}
 autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True
 toc_object_entries = False  # pages have a table of their names; thousands would slow every page

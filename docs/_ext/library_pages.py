@@ -40,7 +40,7 @@ def write_library() -> None:
 
 def _criteria() -> str:
     parts = ["# Criteria\n", _CRITERIA]
-    ordered = sorted(all_criteria(), key=lambda one: one.quantity)
+    ordered = sorted(all_criteria(), key=lambda one: list(_TITLES).index(one.quantity))
     for quantity, some in groupby(ordered, key=lambda one: one.quantity):
         rows = [_criterion(one) for one in some]
         parts.append(f"\n## {_TITLES[quantity]}\n")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from docutils import nodes
 from docutils.utils.math import latex2mathml
 from sphinx.application import Sphinx
@@ -9,6 +11,8 @@ from sphinx.util import logging
 
 __all__ = ["as_mathml", "setup"]
 
+# environments of whole lines, for which aligned ones stand inside a block
+_ENVIRONMENT = re.compile(r"\\(begin|end)\{(?:align|gather|equation|split|multline)\*?\}")
 _LOGGER = logging.getLogger(__name__)
 
 
@@ -20,13 +24,14 @@ def as_mathml(formula: str, *, block: bool) -> str:
     docutils.utils.math.MathError
         A formula that is not understood.
     """
-    return str(latex2mathml.tex2mathml(formula, as_block=block))
+    plain = _ENVIRONMENT.sub(lambda found: f"\\{found[1]}{{aligned}}", formula)
+    if block and ("&" in plain or "\\\\" in plain) and "\\begin" not in plain:
+        plain = f"\\begin{{aligned}}{plain}\\end{{aligned}}"
+    return str(latex2mathml.tex2mathml(plain, as_block=block))
 
 
 def _show(self: object, node: nodes.Element, *, block: bool) -> None:
     formula = node.astext()
-    if block and ("&" in formula or "\\\\" in formula) and "\\begin" not in formula:
-        formula = f"\\begin{{aligned}}{formula}\\end{{aligned}}"
     try:
         made = as_mathml(formula, block=block)
     except Exception as error:  # whatever the converter trips over, the page has to say so

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from api_pages import write_api
 from case_pages import write_cases
@@ -14,13 +15,14 @@ from pages import DOCS
 from sphinx.application import Sphinx
 from study_keys import write_keys
 
-__all__ = ["setup"]
+__all__ = ["fitted", "setup"]
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Have the pages written once the build begins."""
     app.connect("builder-inited", _write)
-    app.connect("source-read", _without_empty_lists)
+    app.connect("env-get-outdated", _read_front_again)
+    app.connect("source-read", _list_front)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -34,17 +36,39 @@ def _write(app: Sphinx) -> None:
 
 
 _LIST = re.compile(r"```\{toctree\}\n(?:.*\n)*?```\n")
+_FRONT = "index"
 
 
-def _without_empty_lists(app: Sphinx, name: str, source: list[str]) -> None:
-    """Take lists of pages out of the front page whose folder has none yet."""
+def _list_front(app: Sphinx, name: str, source: list[str]) -> None:
+    """Fit the front page's lists of pages to the pages that there are."""
     del app
-    if name == "index":
-        source[0] = _LIST.sub(
-            lambda found: found[0] if _leads_somewhere(found[0]) else "", source[0]
-        )
+    if name == _FRONT:
+        source[0] = _LIST.sub(lambda found: fitted(found[0]), source[0])
 
 
-def _leads_somewhere(listed: str) -> bool:
+def fitted(listed: str, folder: Path = DOCS) -> str:
+    """Return a list of pages; "" if there are none, and a folder by its own list if it has one.
+
+    Parameters
+    ----------
+    listed : str
+        A list of pages, as it stands on one.
+    folder : Path
+        Where the pages are.
+    """
     names = [line for line in listed.splitlines() if line and not line.startswith((":", "```"))]
-    return any(any(DOCS.glob(f"{name}.md")) for name in names)
+    if not any(any(folder.glob(f"{name}.md")) for name in names):
+        return ""
+    for name in names:
+        own = folder / name.replace("*", "index.md")
+        if name.endswith("/*") and own.exists() and "{toctree}" in own.read_text("utf-8"):
+            listed = listed.replace(name, name.replace("*", "index"))
+    return listed
+
+
+def _read_front_again(
+    app: Sphinx, env: object, added: set[str], changed: set[str], removed: set[str]
+) -> list[str]:
+    """Have the front page read again when pages come or go."""
+    del app, env, changed
+    return [_FRONT] if added or removed else []

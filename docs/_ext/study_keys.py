@@ -123,7 +123,7 @@ def _kinds(member: type[Section]) -> str:
     names = _kinds_of(member)
     if len(names) > 12:
         return "A vehicle of the library"
-    return ", ".join(f'`kind = "{name}"`' for name in names)
+    return ", ".join([f'`kind = "{names[0]}"`', *(f'`"{name}"`' for name in names[1:])])
 
 
 def _words(section: type[Section]) -> str:
@@ -159,8 +159,9 @@ def example_of(name: str, *kinds: str) -> str:
     """
     found = [block for text in _source_texts() for block in _blocks(text, name)]
     ofit = [block for block in found if not kinds or _kind_in(block, name) in kinds]
-    long_enough = [block for block in ofit if block.count("\n") >= 2]
-    return min(long_enough or ofit, key=lambda one: (one.count("\n"), len(one)), default="")
+    whole = [block for block in ofit if _begins(block, name)] or ofit
+    long_enough = [block for block in whole if block.count("\n") >= 2] or whole
+    return min(long_enough, key=lambda one: (one.count("\n"), len(one)), default="")
 
 
 def _kind_in(block: str, name: str) -> str:

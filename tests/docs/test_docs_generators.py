@@ -276,6 +276,11 @@ def test_formulas_are_drawn_by_the_browser():
     assert 'display="block"' in text
 
 
+def test_lines_of_a_formula_are_a_table():
+    for formula in (r"a &= b \\ c &= d", r"\begin{align*}a &= b \\ c &= d\end{align*}"):
+        assert mathml.as_mathml(formula, block=True).count("<mtr>") == 2
+
+
 def test_a_formula_that_is_not_understood_is_refused():
     with pytest.raises(Exception, match="nosuch"):
         mathml.as_mathml(r"\nosuch{x}", block=False)
@@ -296,8 +301,11 @@ def test_a_page_that_has_not_changed_keeps_its_time(tmp_path):
     assert path.read_text("utf-8") == "two"
 
 
-def test_a_list_of_pages_that_has_none_is_left_out():
-    source = ["a\n```{toctree}\n:glob:\n\nnowhere/*\n```\n\n```{toctree}\n\nroads\n```\n"]
-    references._without_empty_lists(None, "index", source)
-    assert "nowhere" not in source[0]
-    assert "roads" in source[0]
+def test_a_list_of_pages_is_of_those_that_there_are(tmp_path):
+    listed = "```{toctree}\n:glob:\n\ntheory/*\n```\n"
+    assert references.fitted(listed, tmp_path) == ""
+    (tmp_path / "theory").mkdir()
+    (tmp_path / "theory" / "beams.md").write_text("# Beams\n")
+    assert references.fitted(listed, tmp_path) == listed
+    (tmp_path / "theory" / "index.md").write_text("# All\n\n```{toctree}\nbeams\n```\n")
+    assert "theory/index\n" in references.fitted(listed, tmp_path)

@@ -1,6 +1,5 @@
 """Build the manual once for all tests that look at it."""
 
-import fcntl
 import os
 import subprocess
 import sys
@@ -15,6 +14,7 @@ sys.path.insert(0, str(ROOT / "docs" / "_ext"))
 @pytest.fixture(scope="session")
 def manual():
     """Return the folder of the built manual; every worker of one run of the tests shares it."""
+    fcntl = pytest.importorskip("fcntl")
     pytest.importorskip("furo")
     pytest.importorskip("myst_parser")
     run = os.environ.get("PYTEST_XDIST_TESTRUNUID", f"alone {os.getpid()}")

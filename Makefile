@@ -17,11 +17,11 @@ help:
 	@sed -n 's/^# //p' Makefile
 
 .venv/.ready-run: pyproject.toml constraints.txt scripts/setup_environment.py
-	$(PYTHON) scripts/setup_environment.py web
+	$(PYTHON) scripts/setup_environment.py
 	@touch $@
 
 .venv/.ready-dev: pyproject.toml constraints.txt scripts/setup_environment.py
-	$(PYTHON) scripts/setup_environment.py fast cluster web records seismic roads docs dev crosscheck
+	$(PYTHON) scripts/setup_environment.py fast cluster records seismic roads xlsx docs dev crosscheck
 	@touch $@ .venv/.ready-run
 
 demo: .venv/.ready-run

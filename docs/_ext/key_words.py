@@ -26,6 +26,7 @@ _READ = {
     "_crossing": 'place `["1 m", "2 m"]` or `"A/1"`',
     "_axle_load": 'mass or force, such as `"2.65 t"` or `"26 kN"`',
     "_metres": "unit of length",
+    "_as_text": "text, or a date",
     "_as_list": "",  # one value stands for a list of one
     "_field": 'time of the day, such as `"8:30"`',
     "_units": 'units, such as `"kN, m"`',

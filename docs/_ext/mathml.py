@@ -13,6 +13,7 @@ __all__ = ["as_mathml", "setup"]
 
 # environments of whole lines, for which aligned ones stand inside a block
 _ENVIRONMENT = re.compile(r"\\(begin|end)\{(?:align|gather|equation|split|multline)\*?\}")
+_SIZES = re.compile(r"\\[bB]igg?[lrm]?(?![A-Za-z])")  # brackets grow by themselves
 _LOGGER = logging.getLogger(__name__)
 
 
@@ -24,7 +25,8 @@ def as_mathml(formula: str, *, block: bool) -> str:
     docutils.utils.math.MathError
         A formula that is not understood.
     """
-    plain = _ENVIRONMENT.sub(lambda found: f"\\{found[1]}{{aligned}}", formula)
+    plain = _SIZES.sub("", formula)
+    plain = _ENVIRONMENT.sub(lambda found: f"\\{found[1]}{{aligned}}", plain)
     if block and ("&" in plain or "\\\\" in plain) and "\\begin" not in plain:
         plain = f"\\begin{{aligned}}{plain}\\end{{aligned}}"
     return str(latex2mathml.tex2mathml(plain, as_block=block))

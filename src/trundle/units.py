@@ -18,6 +18,7 @@ __all__ = [
     "GAL",
     "KMH",
     "MICROMETRE_PER_SECOND",
+    "PRINTED",
     "motion_scale",
     "to_si",
 ]
@@ -30,6 +31,25 @@ KMH = 1.0 / 3.6
 
 MICROMETRE_PER_SECOND = 1e-6
 """One micrometre per second [m/s]."""
+
+PRINTED: dict[str, float] = {
+    "gal": GAL,
+    "m/s2": 1.0,
+    "mm/s2": 1e-3,
+    "mg": 9.80665e-3,
+    "in/s2": 0.0254,
+    "um/s": MICROMETRE_PER_SECOND,
+    "mm/s": 1e-3,
+    "m/s": 1.0,
+    "mil/s": 2.54e-5,
+    "in/s": 0.0254,
+    "um": 1e-6,
+    "mm": 1e-3,
+    "m": 1.0,
+    "mil": 2.54e-5,
+    "in": 0.0254,
+}
+"""Units of motion that reports are written in, in those of SI."""
 
 DIMENSIONS: dict[str, tuple[str, str]] = {
     "length": ("m", "1 m"),

@@ -281,6 +281,10 @@ def test_lines_of_a_formula_are_a_table():
         assert mathml.as_mathml(formula, block=True).count("<mtr>") == 2
 
 
+def test_sizes_of_brackets_are_the_browsers():
+    assert mathml.as_mathml(r"\Big[ a \bigr)", block=False).count("<mo") == 2
+
+
 def test_a_formula_that_is_not_understood_is_refused():
     with pytest.raises(Exception, match="nosuch"):
         mathml.as_mathml(r"\nosuch{x}", block=False)

@@ -27,7 +27,10 @@ def known():
 def words_of(text):
     """Return the words of a page without code, formulas and addresses; names are left out."""
     plain = re.sub(
-        r"```.*?```|`[^`]*`|\$[^$]*\$|\]\([^)]*\)|https?:\S+", " ", text, flags=re.DOTALL
+        r"```.*?```|`[^`]*`|\$\$.*?\$\$|\$[^$]*\$|\]\([^)]*\)|https?:\S+",
+        " ",
+        text,
+        flags=re.DOTALL,
     )
     return set(re.findall(r"(?<![\w.-])[a-z]{4,}(?![\w-])", plain))
 

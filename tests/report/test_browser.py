@@ -57,7 +57,6 @@ def colours_of(png):
 
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
-    pytest.importorskip("plotly")
     folder = tmp_path_factory.mktemp("report")
     (folder / "study.toml").write_text(LONG + MAP)
     return write_report(run_study(load_study(folder / "study.toml")), folder)
@@ -71,9 +70,7 @@ def test_the_report_opens_without_an_error(page, tmp_path):
     ]
     assert re.search(r"VC-A</td>|VC-A</span>|>VC-A<", verdict)
     assert "✓ pass" in verdict or "✗ fail" in verdict
-    plot = text[text.index('id="map-plot"') :]
-    assert 'class="main-svg"' in plot  # plotly has drawn
-    assert "heatmaplayer" in plot
+    assert re.search(r'<canvas id="map-plot"[^>]* width="[1-9]', text)  # the script has drawn
     markup = re.sub(r"<script.*?</script>", "", text, flags=re.DOTALL)
     assert not re.search(r'(src|href)="https?://', markup)  # it opens without any network
 
@@ -83,6 +80,32 @@ def test_a_picture_of_the_report(page, tmp_path):
     browse(page, tmp_path, f"--screenshot={shot}")
     assert size_of(shot) == (1200, 2200)
     assert colours_of(shot) > 20
+
+
+def test_the_map_has_the_colours_of_its_classes(page, tmp_path):
+    """What the page's data rank at their places is what is seen: each such colour, in its share."""
+    import json
+
+    import numpy as np
+    from matplotlib.colors import to_rgb
+    from matplotlib.image import imread
+
+    shot = tmp_path / "map.png"
+    browse(page, tmp_path, f"--screenshot={shot}")
+    data = json.loads(
+        re.search(r'id="map-data">(.*?)</script>', page.read_text("utf-8"), re.DOTALL).group(1)
+    )
+    ranks = [r for row in data["views"][-1]["ranks"] for r in row if r is not None]
+    pixels = imread(shot)[..., :3].reshape(-1, 3)
+    seen = {
+        rank: int((np.abs(pixels - to_rgb(data["colours"][rank])).max(axis=1) < 0.01).sum())
+        for rank in set(ranks)
+    }
+    for rank, count in seen.items():
+        share = ranks.count(rank) / len(ranks)
+        assert abs(count / sum(seen.values()) - share) < 0.25, (rank, seen)
+    largest = max(seen, key=seen.get)
+    assert seen[largest] > 20_000
 
 
 def test_the_page_of_a_record_opens_without_an_error(tmp_path):

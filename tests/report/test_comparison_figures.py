@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hand_made import BANDS, result_of, study_of
 from matplotlib import rc_context
+from matplotlib.colors import to_rgb
 
 from trundle.criteria import find_criterion
 from trundle.report.canvas import (
@@ -267,14 +268,37 @@ def test_logarithmic_axes_have_plain_numbers():
     assert [written(value, 0) for value in (0.1, 1.0, 1000.0)] == ["0.1", "1", "1000"]
 
 
-def test_colours_of_classes_darken_towards_the_widest():
-    """None is darkest, where little may stand, and each stricter class lighter than the last."""
+LIMITS = [8e-4, 4e-4, 2e-4, 1e-4, 5e-5, 25e-6, 125e-7, 6e-6, 3e-6]
+"""Workshop to operating theatre, VC-A to VC-E [m/s]."""
+
+
+def test_none_workshop_and_vc_a_are_told_apart_by_everybody():
+    """As those see who have no green or no red cones (Vienot, Brettel and Mollon, 1999): far apart.
+
+    Their transformation of linear RGB; 0.25 is a quarter of the way from black to white.
+    """
+    blind = {
+        "nobody": np.eye(3),
+        "red": np.array([[0.11238, 0.88762, 0.0], [0.11238, 0.88762, 0.0], [0.00401, -0.00401, 1]]),
+        "green": np.array([[0.29275, 0.70725, 0.0], [0.29275, 0.70725, 0.0], [-0.02234, 0.02234, 1]]),
+    }  # fmt: skip
+    colours = class_colours(LIMITS)
+    some = np.array([to_rgb(colours[i]) for i in (0, 1, 2, 6)])  # unknown, none, workshop, VC-A
+    for eye in blind.values():
+        seen = np.clip(some**2.2 @ eye.T, 0.0, 1.0) ** (1 / 2.2)
+        apart = np.linalg.norm(seen[:, None] - seen[None], axis=2) / np.sqrt(3.0)
+        assert apart[np.triu_indices(4, 1)].min() > 0.1
+        assert apart[1:, 1:][np.triu_indices(3, 1)].min() > 0.25
+
+
+def test_colours_of_people_lighten_and_those_of_equipment_darken():
+    """From each group's widest to its strictest; none is darker than all of people's."""
     shades = [
-        np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)])
-        @ np.array([0.2126, 0.7152, 0.0722])
-        for colour in class_colours(9)[1:]
+        np.array(to_rgb(colour)) @ np.array([0.2126, 0.7152, 0.0722])
+        for colour in class_colours(LIMITS)[1:]
     ]
-    assert (np.diff(shades) > 0.0).all()
+    assert (np.diff(shades[:5]) > 0.0).all()
+    assert (np.diff(shades[5:]) < 0.0).all()
 
 
 def test_a_case_that_is_no_route_is_called_by_its_name():

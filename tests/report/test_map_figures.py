@@ -131,12 +131,12 @@ def test_ranks_of_a_class_map_are_those_of_its_margins(plan):
     np.testing.assert_array_equal(
         values_of(image_of(panel)).ravel(), [1, 0, 2, 3, 3, 1, 3, 3]
     )  # none, not assessed, VC-A, VC-B
-    assert len(class_colours(4)) == image_of(panel).cmap.N
+    assert len(class_colours([50e-6, 25e-6])) == image_of(panel).cmap.N
     (legend,) = figure.legends
     words = [text.get_text() for text in legend.get_texts()]
     assert words == ["VC-B", "VC-A", "none", "not assessed"]
     faces = [to_hex(handle.get_facecolor()) for handle in legend.legend_handles]
-    assert faces == list(reversed(class_colours(4)))
+    assert faces == list(reversed(class_colours([50e-6, 25e-6])))
     assert faces[-1] == "#d9d9d9"  # as the ground of a panel: nothing is assessed there
     assert legend.get_title().get_text() == "strictest criterion met, vertical"
 

@@ -146,6 +146,15 @@ def test_a_first_mode_near_f_max_is_refused_before_the_runs(tmp_path, monkeypatc
         run_study(study)
 
 
+def test_a_floor_without_a_mode_below_f_max_is_refused_before_the_runs(tmp_path, monkeypatch):
+    """No mode at all, not merely a late first one: the study and what would help are named."""
+    monkeypatch.setattr("trundle.run.whole_study.carry_out", None)
+    study = loaded(tmp_path, ('f_max = "30 Hz"', 'f_max = "1 Hz"'))
+    assert study.floor.modes(1.0).n_modes == 0
+    with pytest.raises(InputError, match=r"study\.toml: the floor has no mode below 1 Hz.*raise"):
+        run_study(study)
+
+
 def test_warnings_of_the_result_are_on_the_screen(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     loaded(tmp_path, ODD["soft floor"])

@@ -50,7 +50,7 @@ def test_every_block_that_is_offered_is_put_into_force_here():
     runs = re.findall(r"(?m)(?:^#.*\n)+", TEXT)
     first = (re.search(r"(?m)^# (?:(\w+) = |\[+([\w.]+)\]+$)", run) for run in runs)
     assert [found[1] or found[2] for found in first if found] == [
-        "duration", "vehicle.van", "road", "point", "shape", "speeds", "peaks",
+        "duration", "vehicle.van", "road", "point", "report", "shape", "speeds", "peaks",
     ]  # fmt: skip
 
 
@@ -63,6 +63,21 @@ def test_the_van_that_is_offered_bounces_and_hops_as_it_says():
     van = study_from_text(text).drives["access road"].vehicle
     assert van.n_contacts == 2
     assert van.total_mass == pytest.approx(3500.0)
+
+
+def test_the_front_of_a_report_is_as_it_says():
+    """A date of TOML's own kind is written as it stands; units are those that reports usually have."""
+    plan = study_from_text(offered("# [report]", "\n# --- what it is held")).report
+    assert plan.heading == (
+        ("Client", "Client Ltd"),
+        ("Job", "2026-117"),
+        ("Revision", "A"),
+        ("Date", "2026-11-27"),
+        ("Author", "A. N. Engineer"),
+    )
+    usual = study_from_text(COARSE).report
+    units = ("acceleration", "velocity", "displacement", "load")
+    assert [getattr(plan, name) for name in units] == [getattr(usual, name) for name in units]
 
 
 def test_curves_of_ones_own_are_read_where_the_template_says(tmp_path):

@@ -8,18 +8,23 @@ from typing import Annotated
 import typer
 
 __all__ = [
+    "Author",
     "Averaging",
+    "Client",
     "Criteria",
+    "Date",
     "Events",
     "FailOn",
     "FullScale",
     "HighPass",
+    "Job",
     "Json",
     "Point",
     "Quiet",
     "Rate",
     "RecordOut",
     "Records",
+    "Revision",
     "Sensitivity",
     "Shape",
     "Simulation",
@@ -50,6 +55,11 @@ FailOn = Annotated[
         help="End with exit code 3 where it is failed or not assessed; may be given several times.",
     ),
 ]
+Client = Annotated[str | None, typer.Option("--client", help="Client, on the report's front.")]
+Job = Annotated[str | None, typer.Option("--job", help="Job or its number.")]
+Revision = Annotated[str | None, typer.Option("--revision", help="Revision.")]
+Date = Annotated[str | None, typer.Option("--date", help="Date, as it is to stand there.")]
+Author = Annotated[str | None, typer.Option("--author", help="Who wrote it.")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of tables; mistakes too.")]
 Quiet = Annotated[
     bool, typer.Option("--quiet", "-q", help="Print nothing but warnings and errors.")

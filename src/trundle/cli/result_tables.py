@@ -26,11 +26,19 @@ def print_result(result: StudyResult) -> None:
     else:
         _print_summary(result)
     bounds = bound_rows(result)
+    a_unit, v_unit = _units(result)
     if bounds:
-        headings = ("bound", "ours by", "class", "method", "a printed [gal]", "a ours [gal]")
+        headings = (
+            "bound",
+            "ours by",
+            "class",
+            "method",
+            f"a printed [{a_unit}]",
+            f"a ours [{a_unit}]",
+        )
         print_table(
             _titled(result, "printed_bound", "upper bounds, ours from medians"),
-            (*headings, "v printed [um/s]", "v ours [um/s]"),
+            (*headings, f"v printed [{v_unit}]", f"v ours [{v_unit}]"),
             (
                 (
                     row.bound,
@@ -52,6 +60,12 @@ def print_result(result: StudyResult) -> None:
     _print_days(result)
 
 
+def _units(result: StudyResult) -> tuple[str, str]:
+    """Return the units of acceleration and velocity that the study asks for."""
+    report = result.study.report
+    return report.acceleration, report.velocity
+
+
 def _titled(result: StudyResult, name: str, title: str) -> str:
     """Return a table's title, behind the number that the study gives it."""
     number = result.study.numbering.get(name)
@@ -65,10 +79,11 @@ def _print_exact(result: StudyResult) -> None:
         rows = [row for row in rows if row.method == assessed.method]
     if not rows:
         return
-    headings = ("vehicle on", "class", "method", "point", "RMS v exact [um/s]", "runs")
+    a_unit, v_unit = _units(result)
+    headings = ("vehicle on", "class", "method", "point", f"RMS v exact [{v_unit}]", "runs")
     print_table(
         f"Exact statistics over all roads, beside {result.study.runs} runs",
-        (*headings, "a 50 % [gal]", "runs", "a 95 % [gal]", "runs (95 % interval)"),
+        (*headings, f"a 50 % [{a_unit}]", "runs", f"a 95 % [{a_unit}]", "runs (95 % interval)"),
         (
             (
                 row.case,
@@ -89,14 +104,22 @@ def _print_exact(result: StudyResult) -> None:
 
 
 def _print_comparison(result: StudyResult) -> None:
-    headings = ("road", "class", "method", "a printed [gal]", "a ours [gal]", "falls at")
+    a_unit, v_unit = _units(result)
+    headings = (
+        "road",
+        "class",
+        "method",
+        f"a printed [{a_unit}]",
+        f"a ours [{a_unit}]",
+        "falls at",
+    )
     print_table(
         _titled(
             result,
             "printed",
             f"printed values beside ours, median (5-95 %) of {result.study.runs} runs",
         ),
-        (*headings, "v printed [um/s]", "v ours [um/s]", "falls at"),
+        (*headings, f"v printed [{v_unit}]", f"v ours [{v_unit}]", "falls at"),
         (
             (
                 row.case,
@@ -118,7 +141,7 @@ def _print_comparison(result: StudyResult) -> None:
 def _print_summary(result: StudyResult) -> None:
     print_table(
         f"Median (5-95 %) of {result.study.runs} runs",
-        ("vehicle on", "class", "method", "point", *summary_headings()),
+        ("vehicle on", "class", "method", "point", *summary_headings(result.study.report)),
         (
             (row.case, row.road, row.method, row.point, *map(_with_range, row.ranges))
             for row in summary_rows(result)

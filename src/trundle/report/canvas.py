@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from textwrap import fill
 from typing import Any
 
 import numpy as np
-from matplotlib import colormaps, rc_context
+from matplotlib import rc_context
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_hex
+from matplotlib.colors import LinearSegmentedColormap, to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter, StrMethodFormatter
+from PIL import Image
 
 __all__ = [
     "COLOURS",
@@ -31,7 +33,12 @@ __all__ = [
 # Okabe and Ito's palette (2008), told apart by nearly everybody.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#7F7F7F")
 
+_WARM = LinearSegmentedColormap.from_list("people", ["#dd5f0a", "#f7a650", "#fde6c4"])
+_COOL = LinearSegmentedColormap.from_list("precision", ["#94bfe9", "#3f86c6", "#0a2f73"])
+_PRECISION = 60e-6  # m/s: VC-A, 50 um/s, is the widest for equipment
+
 _DASHES = ("-", "--", ":", "-.")
+_DPI = 300  # of pictures as files
 _LONGEST = 80  # letters of a name in a row of a legend
 _LEGEND_ROW = 0.17  # inch
 
@@ -74,13 +81,35 @@ class Drawing:
     caption: str
     draw: Callable[[], Figure]
 
-    def save(self, folder: Path) -> None:
-        """Draw it, and write ``NAME.png`` and ``NAME.svg`` into a folder."""
+    def save(self, folder: Path) -> bytes:
+        """Draw it, write ``NAME.png`` (300 dpi) and ``NAME.svg``; return a PNG for a page.
+
+        That of a page has half as many points a side, and 128 colours: a quarter of the bytes.
+        """
         with rc_context(STYLE):
             figure = self.draw()
-            figure.savefig(folder / f"{self.name}.png", dpi=130)
-            figure.set_layout_engine("none")  # laid out once; the second finds it as it is
+            figure.draw_without_rendering()
+            figure.set_layout_engine("none")  # laid out once; both find it as it is
+            large = _rendered(figure)
+            large.save(folder / f"{self.name}.png", compress_level=3, dpi=(_DPI, _DPI))
+            figure.set_dpi(100)
             figure.savefig(folder / f"{self.name}.svg", metadata={"Date": None})
+        return _for_a_page(large)
+
+
+def _rendered(figure: Figure) -> Image.Image:
+    """Return a figure as its picture in print."""
+    figure.set_dpi(_DPI)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+
+
+def _for_a_page(picture: Image.Image) -> bytes:
+    few = picture.reduce(2).quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    target = BytesIO()
+    few.save(target, format="PNG", optimize=True)
+    return target.getvalue()
 
 
 def new_figure(
@@ -135,6 +164,19 @@ def make_logarithmic(axes: Axes, which: str) -> None:
         axis.set_minor_formatter(NullFormatter())
 
 
-def class_colours(n: int) -> list[str]:
-    """Return a colour for each of n classes: grey for not assessed, dark where little may stand."""
-    return ["#d9d9d9", *(to_hex(shade) for shade in colormaps["cividis"](np.linspace(0, 1, n - 1)))]
+def class_colours(limits: Sequence[float]) -> list[str]:
+    """Return a colour for each class of a map: what nobody knows, none, then the criteria.
+
+    Grey for not assessed, nearly black for none, from orange to pale for what people and workshops
+    bear, from pale to dark blue for precision equipment: no two of the three are alike, to the
+    colour-blind neither.
+
+    Parameters
+    ----------
+    limits : sequence of float
+        Smallest limit of each criterion, from the widest to the strictest [m/s].
+    """
+    people = sum(limit > _PRECISION for limit in limits)
+    warm = _WARM(np.linspace(0.0, 1.0, people))
+    cool = _COOL(np.linspace(0.0, 1.0, len(limits) - people))
+    return ["#d9d9d9", "#331111", *(to_hex(shade) for shade in (*warm, *cool))]

@@ -11,7 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from trundle._progress import Tell, silent
 from trundle.report.canvas import Drawing
-from trundle.views.words import between, hertz, rank, written
+from trundle.views.words import between, hertz, margin_words, rank, written
 
 __all__ = ["Picture", "embedded", "template"]
 
@@ -30,6 +30,7 @@ def template(name: str) -> Template:
     )
     environment.filters["sig"] = written
     environment.filters["rank"] = rank
+    environment.filters["margin"] = margin_words
     environment.filters["between"] = between
     environment.filters["hertz"] = hertz
     return environment.get_template(name)
@@ -51,8 +52,7 @@ def embedded(drawings: Sequence[Drawing], figures: Path, *, tell: Tell = silent)
     pictures: list[Picture] = []
     for number, drawing in enumerate(drawings):
         tell(f"figure: {drawing.title}", number / len(drawings))
-        drawing.save(figures)
-        png = (figures / f"{drawing.name}.png").read_bytes()
+        png = drawing.save(figures)
         pictures.append(
             {
                 "name": drawing.name,

@@ -196,6 +196,11 @@ def _all_modes(study: Study, floor: Structure, who: Executor, tell: Tell) -> Mod
 
 def _check_first_mode(study: Study, modes: Modes) -> None:
     """Refuse a method that keeps no mode below half its frequency: nothing would tell its error."""
+    if not modes.n_modes:
+        raise InputError(
+            f"{study.source}: the floor has no mode below {modes.f_max:g} Hz, the highest f_max of "
+            "the methods: raise f_max, better to 112 Hz, which shows all bands to 80 Hz"
+        )
     first = float(modes.frequencies[0])
     for method in study.methods:
         f_max = method.interaction.integration.f_max

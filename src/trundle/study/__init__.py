@@ -3,5 +3,6 @@
 from trundle.study.map_plan import MapPlan
 from trundle.study.model import Study
 from trundle.study.plans import Assessment, Case, Drive, MethodPlan
+from trundle.study.report_plan import ReportPlan
 
-__all__ = ["Assessment", "Case", "Drive", "MapPlan", "MethodPlan", "Study"]
+__all__ = ["Assessment", "Case", "Drive", "MapPlan", "MethodPlan", "ReportPlan", "Study"]

@@ -26,6 +26,7 @@ from trundle.structure.building import Building, Meshing, build_building
 from trundle.structure.superelements import Parting
 from trundle.study.map_plan import MapPlan
 from trundle.study.plans import Assessment, Case, Drive, MethodPlan, Note, Printed, PrintedBound
+from trundle.study.report_plan import ReportPlan
 from trundle.traffic import Schedule
 
 __all__ = [
@@ -116,6 +117,8 @@ class Study:
         Speeds at which axle forces are drawn beside those of the routes [m/s].
     publications : tuple of str
         Publications that the study draws on.
+    report : ReportPlan
+        What stands on the front of its report, and the report's units.
     """
 
     title: str
@@ -151,6 +154,7 @@ class Study:
     numbering: Mapping[str, str]
     force_speeds: tuple[float, ...]
     publications: tuple[str, ...]
+    report: ReportPlan
 
     def __repr__(self) -> str:
         """Say in a line what is studied."""

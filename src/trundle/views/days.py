@@ -10,9 +10,9 @@ from trundle.results.cells import CellKey, DayKey
 from trundle.results.expected_days import DayDoses, DayRow, day_doses, day_rows
 from trundle.results.study_result import StudyResult
 from trundle.results.together import Together, together_rows
+from trundle.study.report_plan import ReportPlan
 from trundle.traffic import Day, Loudest
-from trundle.units import MICROMETRE_PER_SECOND
-from trundle.views.words import hertz
+from trundle.views.words import USUAL, hertz, shown
 
 __all__ = ["DayLine", "DayView", "TogetherLine", "clock", "day_views", "together_lines"]
 
@@ -107,7 +107,7 @@ def day_views(result: StudyResult) -> list[DayView]:
             DayView(
                 key=key,
                 passages=_passages(result, key, day),
-                lines=tuple(_line(row) for row in rows if row.key == key),
+                lines=tuple(_line(row, result.study.report) for row in rows if row.key == key),
                 doses=tuple(dose for dose in doses if dose.key == key),
                 meeting=_meeting(day),
             )
@@ -155,7 +155,7 @@ def _meeting(day: Day | None) -> str:
     )
 
 
-def _line(row: DayRow) -> DayLine:
+def _line(row: DayRow, report: ReportPlan) -> DayLine:
     expected = row.expected
     least = "" if row.complete else "at least "
     low, high = expected.events_on_days
@@ -173,7 +173,7 @@ def _line(row: DayRow) -> DayLine:
         days=f"{low:.0f} to {high:.0f}" if known else "",
         chance=f"{100.0 * expected.any_event:.3g} %" if known else "",
         run=run,
-        loudest=_loudest(row),
+        loudest=_loudest(row, report),
         quiet=expected.events == 0.0 and not row.events_run > 0.0,
     )
 
@@ -190,23 +190,24 @@ def _n(value: float) -> str:
     return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
 
 
-def _loudest(row: DayRow) -> str:
+def _loudest(row: DayRow, report: ReportPlan) -> str:
     if row.day is None:
         return ""
     both = (row.criterion.name, row.point)
     found = next((x for x in row.day.loudest if (x.criterion, x.point) == both), None)
-    return "" if found is None or found.ratio == 0.0 else loudest_words(found)
+    return "" if found is None or found.ratio == 0.0 else loudest_words(found, report)
 
 
-def loudest_words(found: Loudest) -> str:
+def loudest_words(found: Loudest, report: ReportPlan = USUAL) -> str:
     """Say how large a level was, when, and who was there."""
     at = "" if np.isnan(found.band) else f" at {hertz(found.band)} Hz"
+    unit, size = shown("m/s", report)
     who = []
     for one in found.present:
         where = "leaving" if np.isnan(one.x) else f"at ({one.x:.1f}, {one.y:.1f}) m"
         who.append(
             f"{one.route} of {clock(one.departed)} {where}, alone "
-            f"{one.rms_velocity / MICROMETRE_PER_SECOND:.3g} um/s"
+            f"{one.rms_velocity / size:.3g} {unit}"
         )
     return f"{found.ratio:.3g} times the limit{at}, {clock(found.time)}: {'; '.join(who)}"
 

@@ -18,9 +18,20 @@ from trundle.results.study_result import StudyResult
 from trundle.signals import nominal_frequency
 from trundle.study.map_plan import MapGrid, MapPlan
 from trundle.units import KMH
+from trundle.views.plan_lines import PlanLines, plan_lines
 from trundle.views.words import shown
 
-__all__ = ["MapView", "class_names", "class_ranks", "map_payload", "map_views"]
+_MOST_READINGS = 400_000  # of a page: some 2 MB
+
+__all__ = [
+    "MapView",
+    "class_limits_of",
+    "class_names",
+    "class_ranks",
+    "map_payload",
+    "map_views",
+    "worst_place",
+]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -118,6 +129,11 @@ def class_names(classes: ClassMap) -> list[str]:
     return ["not assessed", "none", *(classes.criteria[i].title for i in classes.order())]
 
 
+def class_limits_of(classes: ClassMap) -> list[float]:
+    """Return the smallest limit of each criterion that is ranked, from the widest on [m/s]."""
+    return [float(classes.criteria[i].limits.min()) for i in classes.order()]
+
+
 def class_ranks(classes: ClassMap) -> Int[Array, " places"]:
     """Return 0 where nothing is assessed, 1 for none, then criteria from the widest on."""
     order = {-2: 0, -1: 1, **{index: rank + 2 for rank, index in enumerate(classes.order())}}
@@ -129,12 +145,17 @@ def map_payload(result: StudyResult) -> dict[str, Any]:
     plan = result.study.map
     if plan is None or not result.maps:
         return {}
-    views = map_views(result)
+    views = _fitting(map_views(result))
+    storeys = list(dict.fromkeys(view.grid.on for view in views))
     return {
         "names": class_names(views[0].classes),
+        "limits": class_limits_of(views[0].classes),
         "criterion": plan.criterion,
-        "levels": [[how.word, shown(quantity.units)[0]] for quantity, how in mapped()],
-        "views": [_view(result, view) for view in views],
+        "levels": [
+            [how.word, shown(quantity.units, result.study.report)[0]] for quantity, how in mapped()
+        ],
+        "views": [_view(result, view) | {"plan": storeys.index(view.grid.on)} for view in views],
+        "plans": [_plan(plan_lines(result.study, on)) for on in storeys],
         "routes": [
             {"name": name, "x": _short(line[:, 0]), "y": _short(line[:, 1])}
             for name, line in _lines(result).items()
@@ -164,15 +185,76 @@ def _view(result: StudyResult, view: MapView) -> dict[str, Any]:
         "ranks": [
             [None if np.isnan(r) else int(r) for r in row] for row in view.grid.filled(ranks)
         ],
+        "fields": _fields(view),
+        "complete": [bool(classes.complete[k]) for k in classes.order()],
+        "worst": _worst_of(view, plan.criterion),
         "readings": [
             _readings(view.grid.filled(values))
             for values in (
                 classes.margin[i],
                 _named(classes.governing_band[i]),
                 100.0 * classes.share_exceeding[i],
-                *(view.numbers[q.name] / shown(q.units)[1] for q, _ in mapped()),
+                *(view.numbers[q.name] / shown(q.units, study.report)[1] for q, _ in mapped()),
             )
         ],
+    }
+
+
+def _fitting(views: list[MapView]) -> list[MapView]:
+    """Return as many of some views as a page can carry, the last of them, which is the worst."""
+    kept: list[MapView] = []
+    room = _MOST_READINGS
+    for view in reversed(views):
+        room -= view.grid.there.size * (len(view.classes.order()) + 3 + len(mapped()))
+        if room < 0 and kept:
+            break
+        kept.append(view)
+    return kept[::-1]
+
+
+def _fields(view: MapView) -> list[list[list[int | None]]]:
+    """Return 100 log10 of the margin to each class at every place, from the widest class on.
+
+    Where the field of a class is not below 0 the class is met: what is drawn between places follows
+    from their margins, not from the nearest place.
+    """
+    classes = view.classes
+    found: list[list[list[int | None]]] = []
+    for i in classes.order():
+        grid = view.grid.filled(100.0 * np.log10(np.clip(classes.margin[i], 1e-4, 1e4)))
+        # rounded down, no place comes into another class
+        found.append([[None if np.isnan(v) else int(np.floor(v)) for v in row] for row in grid])
+    return found
+
+
+def worst_place(view: MapView, criterion: str) -> tuple[float, float, float] | None:
+    """Return where the margin to a criterion is smallest [m], and how small; None if unknown."""
+    margin = view.classes.margin[view.classes.index(criterion)]
+    if np.isnan(margin).all():
+        return None
+    at = int(np.nanargmin(margin))
+    x, y = view.grid.xy[at]
+    return float(x), float(y), float(margin[at])
+
+
+def _worst_of(view: MapView, criterion: str) -> dict[str, float] | None:
+    """Return the worst place as the page takes it."""
+    found = worst_place(view, criterion)
+    if found is None:
+        return None
+    x, y, margin = found
+    return {"x": float(f"{x:.6g}"), "y": float(f"{y:.6g}"), "margin": float(f"{margin:.3g}")}
+
+
+def _plan(lines: PlanLines) -> dict[str, Any]:
+    """Return the lines of a storey as plain lists."""
+    return {
+        **{
+            name: [[_short(place) for place in line] for line in getattr(lines, name)]
+            for name in ("rings", "beams", "walls", "columns")
+        },
+        "grid": [[one.name, one.axis, one.at] for one in lines.grid],
+        "north": lines.north,
     }
 
 

@@ -10,8 +10,7 @@ from trundle.response import percentile_rank, upper_bounds
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
 from trundle.study.plans import PrintedBound
-from trundle.units import GAL, MICROMETRE_PER_SECOND
-from trundle.views.words import Range, spread
+from trundle.views.words import Range, shown, spread
 
 __all__ = ["BoundRow", "ComparisonRow", "bound_rows", "comparison_rows"]
 
@@ -25,9 +24,9 @@ class ComparisonRow:
     case, road, method : str
         The cell.
     peak, rms : tuple of float
-        Our 5, 50 and 95 % [gal], [um/s].
+        Our 5, 50 and 95 %, in the report's units.
     printed_peak, printed_rms : float
-        Printed values [gal], [um/s].
+        Printed values.
     peak_rank, rms_rank : float
         Share of our runs below the printed value, 0 to 100.
     """
@@ -60,6 +59,7 @@ class BoundRow:
 def comparison_rows(result: StudyResult) -> list[ComparisonRow]:
     """Return the printed cells beside ours, at the study's first point."""
     rows = []
+    a_unit, v_unit = (shown(unit, result.study.report)[1] for unit in ("m/s2", "m/s"))
     for printed in result.study.printed:
         cell = result.cells[CellKey(printed.case, printed.road, printed.method)]
         peak, rms = cell.peak_acceleration[:, 0], cell.rms_velocity[:, 0]
@@ -68,10 +68,10 @@ def comparison_rows(result: StudyResult) -> list[ComparisonRow]:
                 case=printed.case,
                 road=printed.road,
                 method=printed.method,
-                peak=spread(peak, GAL),
-                rms=spread(rms, MICROMETRE_PER_SECOND),
-                printed_peak=printed.peak_acceleration / GAL,
-                printed_rms=printed.rms_velocity / MICROMETRE_PER_SECOND,
+                peak=spread(peak, a_unit),
+                rms=spread(rms, v_unit),
+                printed_peak=printed.peak_acceleration / a_unit,
+                printed_rms=printed.rms_velocity / v_unit,
                 peak_rank=percentile_rank(printed.peak_acceleration, peak),
                 rms_rank=percentile_rank(printed.rms_velocity, rms),
             )
@@ -86,6 +86,7 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
     printed accelerations are sums, the printed velocities nearer to the other.
     """
     study = result.study
+    a_unit, v_unit = (shown(unit, study.report)[1] for unit in ("m/s2", "m/s"))
     named = {row.case for row in study.printed}
     # a bound is of the published vehicle, whatever else drives beside it
     theirs = {
@@ -124,10 +125,10 @@ def bound_rows(result: StudyResult) -> list[BoundRow]:
                 rule=rule,
                 road=printed.road,
                 method=printed.method,
-                peak=peak / GAL,
-                rms=velocity / MICROMETRE_PER_SECOND,
-                printed_peak=printed.peak_acceleration / GAL,
-                printed_rms=printed.rms_velocity / MICROMETRE_PER_SECOND,
+                peak=peak / a_unit,
+                rms=velocity / v_unit,
+                printed_peak=printed.peak_acceleration / a_unit,
+                printed_rms=printed.rms_velocity / v_unit,
             )
             for rule, peak, velocity in ours
         ]

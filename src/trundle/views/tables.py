@@ -9,8 +9,8 @@ import numpy as np
 from trundle.response import percentile_interval, tabled
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
-from trundle.units import GAL, MICROMETRE_PER_SECOND
-from trundle.views.words import Range, shown, spread, written
+from trundle.study.report_plan import ReportPlan
+from trundle.views.words import USUAL, Range, shown, spread, written
 
 __all__ = [
     "ExactRow",
@@ -43,11 +43,12 @@ class ExactRow:
     case, road, method, point : str
         The cell.
     rms, sampled_rms : float
-        Root of the mean square velocity over record and roads, exact and of the runs [um/s].
+        Root of the mean square velocity over record and roads, exact and of the runs, in the
+        report's unit.
     peak, sampled_peak : tuple of float
-        50 and 95 % of the peak acceleration, by the exact moments and of the runs [gal].
+        50 and 95 % of the peak acceleration, by the exact moments and of the runs.
     interval : tuple of float
-        Where the runs' 95 % peak lies with 95 % confidence [gal].
+        Where the runs' 95 % peak lies with 95 % confidence.
     quadrature_error : float
         Of the exact statistics.
     """
@@ -94,13 +95,14 @@ class TruncationRow:
     acceleration: float
 
 
-def summary_headings() -> list[str]:
+def summary_headings(report: ReportPlan = USUAL) -> list[str]:
     """Return what the ranges of a `SummaryRow` are of, with the units that they are in."""
-    return [f"{quantity.heading} [{shown(quantity.units)[0]}]" for quantity in tabled()]
+    return [f"{quantity.heading} [{shown(quantity.units, report)[0]}]" for quantity in tabled()]
 
 
 def summary_rows(result: StudyResult) -> list[SummaryRow]:
     """Return one row a cell and point."""
+    report = result.study.report
     return [
         SummaryRow(
             case=key.case,
@@ -108,7 +110,7 @@ def summary_rows(result: StudyResult) -> list[SummaryRow]:
             method=key.method,
             point=point,
             ranges=tuple(
-                spread(cell.reduced.numbers[quantity.name][:, i], shown(quantity.units)[1])
+                spread(cell.reduced.numbers[quantity.name][:, i], shown(quantity.units, report)[1])
                 for quantity in tabled()
             ),
         )
@@ -120,12 +122,13 @@ def summary_rows(result: StudyResult) -> list[SummaryRow]:
 def exact_rows(result: StudyResult) -> list[ExactRow]:
     """Return exact statistics beside sampled ones, one row a cell and point that has them."""
     rows = []
+    a_unit, v_unit = (shown(unit, result.study.report)[1] for unit in ("m/s2", "m/s"))
     for key, cell in result.cells.items():
         if cell.exact is None or cell.exact_peaks is None:
             continue
         exact, (medians, highs) = cell.exact, cell.exact_peaks
         for i, point in enumerate(result.study.points):
-            peaks = cell.peak_acceleration[:, i] / GAL
+            peaks = cell.peak_acceleration[:, i] / a_unit
             low, high = percentile_interval(peaks, 95.0)
             rows.append(
                 ExactRow(
@@ -133,10 +136,9 @@ def exact_rows(result: StudyResult) -> list[ExactRow]:
                     road=key.road,
                     method=key.method,
                     point=point,
-                    rms=float(exact.rms()[i]) / MICROMETRE_PER_SECOND,
-                    sampled_rms=float(np.sqrt(np.mean(cell.rms_velocity[:, i] ** 2)))
-                    / MICROMETRE_PER_SECOND,
-                    peak=(float(medians[i]) / GAL, float(highs[i]) / GAL),
+                    rms=float(exact.rms()[i]) / v_unit,
+                    sampled_rms=float(np.sqrt(np.mean(cell.rms_velocity[:, i] ** 2))) / v_unit,
+                    peak=(float(medians[i]) / a_unit, float(highs[i]) / a_unit),
                     sampled_peak=(float(np.median(peaks)), float(np.percentile(peaks, 95.0))),
                     interval=(low, high),
                     quadrature_error=exact.quadrature_error,

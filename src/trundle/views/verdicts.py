@@ -34,22 +34,32 @@ def headline(result: StudyResult) -> list[dict[str, Any]]:
             best = strictest_passed(bands)
             failed = [v for v in bands if v.status == "fail"]
             first = max(failed, key=lambda v: float(v.criterion.limits.min()), default=None)
-            lines.append(
-                {
-                    "case": key.case,
-                    "road": key.road,
-                    "point": point,
-                    "best": best,
-                    "first": first,
-                    "where": _where(result, key, first or best),
-                    "governs": _governs(meetings, key, first or best),
-                    "worst": _worst_place(result, key, first or best),
-                    "road_passed": roughest_words(result.study, key.road, best) if best else "",
-                    "unmet": _unmet(bands),
-                    "reasons": _reasons(verdicts, point),
-                }
-            )
+            line = {
+                "case": key.case,
+                "road": key.road,
+                "point": point,
+                "best": best,
+                "first": first,
+                "where": _where(result, key, first or best),
+                "governs": _governs(meetings, key, first or best),
+                "worst": _worst_place(result, key, first or best),
+                "road_passed": roughest_words(result.study, key.road, best) if best else "",
+                "unmet": _unmet(bands),
+                "reasons": _reasons(verdicts, point),
+            }
+            lines.append(line | {"notes": _notes(line)})
     return lines
+
+
+def _notes(line: Mapping[str, Any]) -> list[str]:
+    """Say when and where a level governs, who of several governs, and what road still passes."""
+    words = {
+        "where": "largest at ",
+        "governs": "",
+        "worst": "smallest margin on the map ",
+        "road_passed": "what is met holds on a road of ",
+    }
+    return [f"{before}{line[name]}" for name, before in words.items() if line[name]]
 
 
 def _governs(

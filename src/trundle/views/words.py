@@ -9,12 +9,15 @@ from trundle.criteria.verdict import frequency_name
 from trundle.road import CLASS_NAMES, RoadClass, class_limits
 from trundle.signals import Averaging
 from trundle.study.model import Study
-from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.study.report_plan import ReportPlan
+from trundle.units import PRINTED
 
 __all__ = [
+    "USUAL",
     "Range",
     "between",
     "hertz",
+    "margin_words",
     "rank",
     "road_words",
     "roughest_words",
@@ -24,6 +27,9 @@ __all__ = [
     "spread",
     "written",
 ]
+
+USUAL = ReportPlan()
+"""Units of a report whose study does not choose them."""
 
 Range = tuple[float, float, float]
 """5 %, 50 % and 95 % of the runs."""
@@ -41,6 +47,15 @@ def written(value: float, digits: int = 3) -> str:
     return f"{short:.0f}" if 10.0**digits <= abs(short) < 1e6 else f"{value:.{digits}g}"
 
 
+def margin_words(value: float) -> str:
+    """Write a margin with two digits, where little room is: below 0.01 nobody asks how far."""
+    if np.isnan(value):
+        return ""
+    if value < 0.01:
+        return "<0.01"
+    return f"{value:.2f}" if value < 0.1 else f"{value:.2g}" if value < 100.0 else ">99"
+
+
 def roughness_words(value: float) -> str:
     """Write a Gd(n0) [m3] as people do: in 1e-6 m3, without a second power of ten."""
     short = float(f"{1e6 * value:.3g}")
@@ -49,14 +64,16 @@ def roughness_words(value: float) -> str:
     return f"{short:.0f}e-6 m3" if short >= 1e3 else f"{short:g}e-6 m3"
 
 
-def shown(units: str) -> tuple[str, float]:
-    """Return the unit that engineers read a quantity in, and its size in SI."""
-    units_of_people = {
-        "m/s2": ("gal", GAL),
-        "m/s": ("um/s", MICROMETRE_PER_SECOND),
-        "m/s1.75": ("m/s^1.75", 1.0),
+def shown(units: str, report: ReportPlan = USUAL) -> tuple[str, float]:
+    """Return the unit that a report writes a quantity of motion in, and its size in SI."""
+    asked = {
+        "m/s2": report.acceleration,
+        "m/s": report.velocity,
+        "m": report.displacement,
     }
-    return units_of_people.get(units, (units, 1.0))
+    if units in asked:
+        return asked[units], PRINTED[asked[units]]
+    return {"m/s1.75": ("m/s^1.75", 1.0)}.get(units, (units, 1.0))
 
 
 def between(verdict: Verdict) -> str:

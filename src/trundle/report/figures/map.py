@@ -15,13 +15,14 @@ from matplotlib.ticker import StrMethodFormatter
 
 from trundle._typing import Array
 from trundle.report.canvas import COLOURS, Drawing, class_colours, legend_below, new_figure
+from trundle.report.figures.class_plan import fill_classes
 from trundle.report.figures.sources import draw_sources
 from trundle.response.quantities import Quantity, mapped
 from trundle.results.study_result import StudyResult
 from trundle.structure.building import Building
 from trundle.study.map_plan import MapGrid
 from trundle.study.model import Study
-from trundle.views.map import MapView, class_names, class_ranks, map_views
+from trundle.views.map import MapView, class_limits_of, class_names, class_ranks, map_views
 from trundle.views.words import shown
 
 __all__ = ["draw_building", "draw_image", "draw_panels", "drawings"]
@@ -69,7 +70,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
             yield Drawing(
                 name=how.figure,
                 title=how.title,
-                caption=f"{_worst_words(views, quantity)} {about}",
+                caption=f"{_worst_words(study, views, quantity)} {about}",
                 draw=lambda quantity=quantity: level_map_figure(study, views, quantity),
             )
 
@@ -82,9 +83,9 @@ def _has_columns(study: Study) -> bool:
     )
 
 
-def _worst_words(views: list[MapView], quantity: Quantity) -> str:
+def _worst_words(study: Study, views: list[MapView], quantity: Quantity) -> str:
     """Say where a quantity is largest, and under what."""
-    unit, scale = shown(quantity.units)
+    unit, scale = shown(quantity.units, study.report)
     best = max(views, key=lambda view: _largest(view.numbers[quantity.name]))
     values = best.numbers[quantity.name]
     if not np.isfinite(values).any():
@@ -104,12 +105,13 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
     plan = study.map
     assert plan is not None  # there are views
     names = class_names(views[0].classes)
-    colours = class_colours(len(names))
+    colours = class_colours(class_limits_of(views[0].classes))
     figure, panels = draw_panels(study, [view.title for view in views])
     norm = BoundaryNorm(np.arange(len(names) + 1) - 0.5, len(names))
     for panel, view in zip(panels, views, strict=True):
         levels = class_ranks(view.classes)
         _image(panel, study, view, levels, cmap=ListedColormap(colours), norm=norm)
+        fill_classes(panel, view)
     shown = sorted({int(r) for view in views for r in class_ranks(view.classes)})
     ranks = shown[::-1]
     legend_below(
@@ -168,7 +170,7 @@ def share_map_figure(study: Study, views: list[MapView]) -> Figure:
 
 def level_map_figure(study: Study, views: list[MapView], quantity: Quantity) -> Figure:
     """Draw a quantity at every place of every view, on one logarithmic scale."""
-    unit, scale = shown(quantity.units)
+    unit, scale = shown(quantity.units, study.report)
     levels = [view.numbers[quantity.name] / scale for view in views]
     plan = study.map
     assert plan is not None  # there are views

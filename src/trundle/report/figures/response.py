@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from trundle.criteria import Criterion
 from trundle.report.canvas import (
@@ -18,14 +19,16 @@ from trundle.report.canvas import (
     make_logarithmic,
     new_figure,
 )
+from trundle.report.figures.passing import draw_passing, passing_handles
 from trundle.response import BandSpectra
 from trundle.results.cells import CellKey
 from trundle.results.study_result import StudyResult
 from trundle.study.model import Study
 from trundle.study.plans import Assessment
-from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.study.report_plan import ReportPlan
+from trundle.units import MICROMETRE_PER_SECOND
 from trundle.views.printed import ComparisonRow, comparison_rows
-from trundle.views.words import rule_name
+from trundle.views.words import USUAL, rule_name, shown
 
 __all__ = ["draw_criterion", "drawings"]
 
@@ -48,7 +51,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
             name="comparison",
             title="Published values on our ranges",
             caption="Median (dot) and 5-95 % (bar) of our runs; crosses are published values.",
-            draw=lambda: comparison_figure(rows),
+            draw=lambda: comparison_figure(rows, study.report),
         )
 
 
@@ -62,7 +65,8 @@ def _histories(result: StudyResult) -> Iterator[Drawing]:
         yield Drawing(
             name=f"history_{i + 1}" + (f"_{j + 1}" if j else ""),
             title=f"Acceleration at {point}: {what}",
-            caption="First realisation by each method, on the same road.",
+            caption="First realisation by each method, on the same road; bars above it while each "
+            "source is on the floor, with a mark where its front axle is nearest to the point.",
             draw=lambda name=case.name, point=point: history_figure(result, name, point),
         )
 
@@ -83,7 +87,8 @@ def _criteria(result: StudyResult, assessment: Assessment) -> Iterator[Drawing]:
             yield Drawing(
                 name=f"criteria_velocity_{k + 1}{end}",
                 title=f"Velocity spectra at {point} against criteria, class {road}",
-                caption="One-third-octave RMS velocity on the generic criteria.",
+                caption="One-third-octave RMS velocity on the velocity criteria; hatched where a "
+                "criterion asks for a band that a case does not tell.",
                 draw=lambda road=road, point=point: velocity_criteria_figure(
                     result, road, method, point
                 ),
@@ -110,38 +115,47 @@ def history_figure(result: StudyResult, case: str, point: str) -> Figure:
         share="x",
     )
     i = list(study.points).index(point)
+    unit, size = shown("m/s2", study.report)
     for panel, (method, road) in zip(axes, itertools.product(methods, roads), strict=True):
-        history = result.cells[CellKey(case, road, method)].history
-        values = history.acceleration[:, i] / GAL
+        key = CellKey(case, road, method)
+        history = result.cells[key].history
+        values = history.acceleration[:, i] / size
         colour = COLOURS[methods.index(method) % len(COLOURS)]
         panel.plot(history.time, values, color=colour, linewidth=0.8)
         panel.set(xlim=(0.0, history.time[-1]))
+        panel.margins(y=0.2)
+        draw_passing(panel, result, key, point, float(history.time[-1]))
         panel.set_title(
-            f"{method}, class {road}: peak {np.abs(values).max():.3g} gal", loc="left", fontsize=8
+            f"{method}, class {road}: peak {np.abs(values).max():.3g} {unit}",
+            loc="left",
+            fontsize=8,
         )
     for panel in axes[:: len(roads)]:
-        panel.set_ylabel("a [gal]")
+        panel.set_ylabel(f"a [{unit}]")
     for panel in axes[-len(roads) :]:
         panel.set_xlabel("time [s]")
+    legend_below(figure, *passing_handles(result, key), columns=2)
     return figure
 
 
 def velocity_criteria_figure(result: StudyResult, road: str, method: str, point: str) -> Figure:
     """Draw band levels of every case on the velocity criteria."""
     figure, (axes,) = new_figure(7.2, 4.6)
+    unit, size = shown("m/s", result.study.report)
     for criterion in _limits(result.study, point, "band_rms_velocity"):
-        draw_criterion(axes, criterion)
+        draw_criterion(axes, criterion, size)
+    hatch = _draw_unknown(axes, result, CellKey("", road, method), point)
     i = list(result.study.points).index(point)
     spectra_rule = result.study.assessment.averaging if result.study.assessment else "max_1s"
     for number, case in enumerate(result.study.cases):
         spectra = result.cells[CellKey(case.name, road, method)].spectra
-        _draw_levels(axes, spectra, i, case.name, line_look(number))
+        _draw_levels(axes, (spectra, i, size), case.name, line_look(number))
     make_logarithmic(axes, "xy")
     ticks = [1, 2, 4, 8, 16, 31.5, 63]
     axes.set(
         xlim=(0.9, 130.0),
         xlabel="mid-band frequency [Hz]",
-        ylabel=f"RMS velocity in one-third octaves [um/s]\n({rule_name(spectra_rule)})",
+        ylabel=f"RMS velocity in one-third octaves [{unit}]\n({rule_name(spectra_rule)})",
     )
     axes.set_ylim(bottom=max(axes.get_ylim()[0], 0.01))
     axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
@@ -149,18 +163,36 @@ def velocity_criteria_figure(result: StudyResult, road: str, method: str, point:
     axes.set_title(
         f"class {road}, {point}, method {method!r}: median and 5-95 % of the runs", fontsize=9
     )
-    legend_below(figure, *axes.get_legend_handles_labels(), columns=len(result.study.cases))
+    handles, labels = axes.get_legend_handles_labels()
+    if hatch is not None:
+        handles, labels = [*handles, hatch], [*labels, "not assessed for a case or all"]
+    legend_below(figure, handles, labels, columns=len(labels))
     return figure
 
 
+def _draw_unknown(axes: Axes, result: StudyResult, which: CellKey, point: str) -> Patch | None:
+    """Hatch bands that a criterion asks for and some case does not tell; return the look."""
+    bands = {
+        f
+        for key, verdicts in result.verdicts.items()
+        if (key.road, key.method) == (which.road, which.method)
+        for v in verdicts
+        if v.point == point and v.criterion.quantity == "band_rms_velocity"
+        for f in (*v.unresolved, *v.unexcited)
+    }
+    look = {"facecolor": "none", "edgecolor": "#9A9A9A", "hatch": "////", "linewidth": 0.0}
+    for f in bands:
+        axes.axvspan(f * 10.0**-0.05, f * 10.0**0.05, zorder=0.5, **look)
+    return Patch(**look) if bands else None
+
+
 def _draw_levels(
-    axes: Axes, spectra: BandSpectra, point: int, name: str, look: tuple[str, str]
+    axes: Axes, what: tuple[BandSpectra, int, float], name: str, look: tuple[str, str]
 ) -> None:
-    """Draw median and range of the band levels of a case at a point [um/s]."""
+    """Draw median and range of the band levels of a case at a point, in a unit of that size."""
     colour, dashes = look
-    low, middle, high = (
-        spectra.percentile(p)[point] / MICROMETRE_PER_SECOND for p in (5.0, 50.0, 95.0)
-    )
+    spectra, point, size = what
+    low, middle, high = (spectra.percentile(p)[point] / size for p in (5.0, 50.0, 95.0))
     axes.fill_between(spectra.mid_band, low, high, color=colour, alpha=0.18, linewidth=0)
     axes.plot(
         spectra.mid_band,
@@ -173,9 +205,9 @@ def _draw_levels(
     )
 
 
-def draw_criterion(axes: Axes, criterion: Criterion) -> None:
-    """Draw a velocity criterion [um/s] with its name at its end."""
-    limits = criterion.limits / MICROMETRE_PER_SECOND
+def draw_criterion(axes: Axes, criterion: Criterion, size: float = MICROMETRE_PER_SECOND) -> None:
+    """Draw a velocity criterion with its name at its end, in a unit of that size [m/s]."""
+    limits = criterion.limits / size
     axes.plot(criterion.frequencies, limits, color="black", linewidth=0.9)
     axes.annotate(
         criterion.title,
@@ -189,13 +221,14 @@ def draw_criterion(axes: Axes, criterion: Criterion) -> None:
 
 
 def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -> Figure:
-    """Draw the peak accelerations of every case on the limits in gal."""
+    """Draw the peak accelerations of every case on the limits."""
+    unit, size = shown("m/s2", result.study.report)
     figure, (axes,) = new_figure(7.2, 3.8)
     i = list(result.study.points).index(point)
     labels: list[str] = []
     for case in result.study.cases:
         for number, road in enumerate(result.study.roads):
-            peaks = result.cells[CellKey(case.name, road, method)].peak_acceleration[:, i] / GAL
+            peaks = result.cells[CellKey(case.name, road, method)].peak_acceleration[:, i] / size
             low, middle, high = np.percentile(peaks, [5.0, 50.0, 95.0])
             x = len(labels)
             colour = COLOURS[number % len(COLOURS)]
@@ -203,10 +236,10 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
             axes.plot([x], [middle], marker="o", color=colour)
             labels.append(f"{case.name}, {road}")
     for criterion in _limits(result.study, point, "peak_acceleration"):
-        limit = float(criterion.limits[0]) / GAL
+        limit = float(criterion.limits[0]) / size
         axes.axhline(limit, color="black", linewidth=0.9)
         axes.annotate(
-            f"{criterion.title.split(' (')[0]}, {limit:g} gal",
+            f"{criterion.title.split(' (')[0]}, {limit:.4g} {unit}",
             (1.0, limit),
             xycoords=("axes fraction", "data"),
             xytext=(0, 2),
@@ -216,7 +249,7 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
             fontsize=8,
         )
     make_logarithmic(axes, "y")
-    axes.set(ylabel="peak acceleration, 0-peak [gal]")
+    axes.set(ylabel=f"peak acceleration, 0-peak [{unit}]")
     axes.set_xticks(
         range(len(labels)), labels, fontsize=8, rotation=35, ha="right", rotation_mode="anchor"
     )
@@ -224,13 +257,13 @@ def acceleration_criteria_figure(result: StudyResult, method: str, point: str) -
     return figure
 
 
-def comparison_figure(rows: Sequence[ComparisonRow]) -> Figure:
+def comparison_figure(rows: Sequence[ComparisonRow], report: ReportPlan = USUAL) -> Figure:
     """Draw our ranges with the printed values on them."""
     methods = list(dict.fromkeys(row.method for row in rows))
     figure, axes = new_figure(7.2, 0.30 * len(rows) + 1.2, columns=2, share="y")
     for panel, what, unit in (
-        (axes[0], "peak", "peak acceleration [gal]"),
-        (axes[1], "rms", "record RMS velocity [um/s]"),
+        (axes[0], "peak", f"peak acceleration [{report.acceleration}]"),
+        (axes[1], "rms", f"record RMS velocity [{report.velocity}]"),
     ):
         for y, row in enumerate(rows):
             low, middle, high = getattr(row, what)

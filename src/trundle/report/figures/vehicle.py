@@ -48,7 +48,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
             name=f"vehicle{end}",
             title=f"Vehicle: {name}",
             caption=f"Contacts with static loads, springs and dampers. Source: {vehicle.source}.",
-            draw=lambda one=vehicle: vehicle_figure(one),
+            draw=lambda one=vehicle: vehicle_figure(one, study.report.load),
         )
         yield Drawing(
             name=f"vehicle_modes{end}",
@@ -64,7 +64,7 @@ def drawings(result: StudyResult) -> Iterator[Drawing]:
             caption="Contact forces on rigid ground without the static load, one realisation of a "
             f"road of {road}.",
             draw=lambda one=vehicle, at=at: axle_forces_figure(
-                one, road, study.band, at, seed=study.seed
+                one, road, study.band, at, seed=study.seed, unit=study.report.load
             ),
         )
 
@@ -75,8 +75,9 @@ def _random_road(roads: Iterable[Road]) -> Road:
     return next((one for one in bare if not one.is_given), RoadClass("A"))
 
 
-def vehicle_figure(vehicle: Vehicle) -> Figure:
-    """Draw contacts, springs and static loads of a vehicle."""
+def vehicle_figure(vehicle: Vehicle, unit: str = "t") -> Figure:
+    """Draw contacts, springs and static loads of a vehicle; these in t or kN."""
+    size = _load(unit)
     length = max(vehicle.length, 1.0)
     rows = _label_rows(vehicle.setback, _LABEL * length)
     low = -1.9 - _ROW * max(rows)
@@ -91,9 +92,9 @@ def vehicle_figure(vehicle: Vehicle) -> Figure:
     )
     for i, place in enumerate(vehicle.setback):
         _spring(axes, float(place))
-        load = vehicle.static_forces[i] / GRAVITY / 1e3
+        load = vehicle.static_forces[i] / size
         text = (
-            f"{vehicle.contact_names[i]}\n{load:.2f} t\n"
+            f"{vehicle.contact_names[i]}\n{load:.2f} {unit}\n"
             f"k = {vehicle.contact_stiffness[i] / 1e6:.3g} MN/m\n"
             f"c = {vehicle.contact_damping[i] / 1e3:.3g} kN s/m"
         )
@@ -115,6 +116,11 @@ def vehicle_figure(vehicle: Vehicle) -> Figure:
     axes.grid(visible=False)
     axes.spines["left"].set_visible(False)
     return figure
+
+
+def _load(unit: str) -> float:
+    """Return the size of a unit of loads, t or kN [N]."""
+    return {"t": 1e3 * GRAVITY, "kN": 1e3}[unit]
 
 
 def _label_rows(places: Array, width: float) -> list[int]:
@@ -166,6 +172,7 @@ def axle_forces_figure(
     *,
     seed: int,
     duration: float = 25.0,
+    unit: str = "t",
 ) -> Figure:
     """Draw the dynamic axle forces of one run at several speeds [m/s]."""
     figure, axes = new_figure(7.2, 1.9 * len(speeds) + 0.3, rows=len(speeds), share="xy")
@@ -183,11 +190,11 @@ def axle_forces_figure(
             duration=min(duration, _MOST_STEPS * dt),
         )
         for i in reversed(range(vehicle.n_contacts)):
-            dynamic = (forces[0, :, i] - vehicle.static_forces[i]) / GRAVITY / 1e3
+            dynamic = (forces[0, :, i] - vehicle.static_forces[i]) / _load(unit)
             colour, dashes = line_look(i)
             name = vehicle.contact_names[i]
             panel.plot(time, dynamic, color=colour, linestyle=dashes, linewidth=0.8, label=name)
-        panel.set(ylabel="force [t]", title=f"{in_kmh(speed)}, {road}", xlim=(0.0, duration))
+        panel.set(ylabel=f"force [{unit}]", title=f"{in_kmh(speed)}, {road}", xlim=(0.0, duration))
     handles, labels = axes[0].get_legend_handles_labels()
     legend_below(figure, handles[::-1], labels[::-1], columns=6)
     axes[-1].set_xlabel("time [s]")

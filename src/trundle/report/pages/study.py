@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -13,6 +14,7 @@ from trundle.errors import InputError
 from trundle.report.canvas import Drawing, class_colours
 from trundle.report.figures import (
     building,
+    class_plan,
     day,
     floor,
     given_road,
@@ -23,13 +25,14 @@ from trundle.report.figures import (
     vehicle,
 )
 from trundle.report.html import Picture, embedded, template
-from trundle.report.interactive import plotly_script
 from trundle.results.mesh_change import mesh_words
 from trundle.results.parts_change import parts_words
 from trundle.results.study_result import StudyResult
 from trundle.road import CLASS_NAMES, class_limits
 from trundle.structure import Structure, self_weight_deflection
-from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.study.model import Study
+from trundle.views.assumptions import assumption_lines, source_lines
+from trundle.views.conclusions import concluded, conclusion_of_all, lights
 from trundle.views.days import day_views, together_lines
 from trundle.views.map import map_payload
 from trundle.views.printed import bound_rows, comparison_rows
@@ -48,6 +51,7 @@ _FILES = (
     vehicle,
     response,
     day,
+    class_plan,
     map,
 )  # in the order of the page
 
@@ -100,13 +104,13 @@ def _numbered(drawing: Drawing, numbering: Mapping[str, str]) -> Drawing:
 
 def _with_colours(payload: dict[str, Any]) -> dict[str, Any]:
     """Return what the interactive map shows, with a colour for each class."""
-    return payload and payload | {"colours": class_colours(len(payload["names"]))}
+    return payload and payload | {"colours": class_colours(payload["limits"])}
 
 
 def _render(result: StudyResult, pictures: list[Picture]) -> str:
     study = result.study
     columns, matrix = verdict_matrix(result)
-    modes = result.modes
+    modes, conclusions = result.modes, concluded(result)
     return template("report.html.j2").render(
         study=study,
         numbering=study.numbering,
@@ -114,19 +118,24 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         comparison=comparison_rows(result),
         bounds=bound_rows(result),
         summary=summary_rows(result),
-        summary_headings=summary_headings(),
+        summary_headings=summary_headings(study.report),
         exact=exact_rows(result),
         truncation=truncation_rows(result),
         map=_with_colours(map_payload(result)),
-        plotly=plotly_script() if result.maps else "",
         columns=columns,
         roads=road_words(study),
         matrix=matrix,
         verdict=headline(result),
+        conclusions=conclusions,
+        conclusion=conclusion_of_all(conclusions),
+        lights=lights(result),
+        logo=_logo(study),
         together=together_lines(result),
         days=day_views(result),
         mesh="" if result.mesh is None else mesh_words(result.mesh),
         parts="" if result.parts is None else parts_words(result.parts),
+        assumptions=assumption_lines(study),
+        sources=source_lines(study),
         warnings=result.warnings(),
         provenance=result.provenance,
         frequencies=[] if modes is None else [f"{f:.2f}" for f in modes.frequencies[:24]],
@@ -134,8 +143,6 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         moving_mass=study.floor.moving_mass(),
         sag=_sag(study.floor),
         class_limits=_class_table(),
-        gal=GAL,
-        micrometre=MICROMETRE_PER_SECOND,
     )
 
 
@@ -145,6 +152,13 @@ def _sag(floor: Structure) -> float | None:
         return -1e3 * float(self_weight_deflection(floor).min())
     except InputError:  # it is known by its modes
         return None
+
+
+def _logo(study: Study) -> str:
+    """Return the study's logo as the address of a picture; nothing without one."""
+    data = study.files.get(study.report.logo, b"") if study.report.logo else b""
+    kind = "png" if data.startswith(b"\x89PNG") else "jpeg"
+    return f"data:image/{kind};base64,{base64.b64encode(data).decode('ascii')}" if data else ""
 
 
 def _class_table() -> list[tuple[str, list[str]]]:

@@ -7,7 +7,7 @@
 # make faults    put faults into a copy of the source; every one must make a test fail
 # make bench     speed, as ratios within one run
 # make dist      wheel and source archive in dist, checked as they would be published
-# make docs      the reference of all public names, as HTML in build/docs
+# make docs      the manual with all references, as HTML in build/docs; a warning is an error
 PYTHON ?= python3
 BIN := .venv/bin
 
@@ -22,15 +22,15 @@ help:
 	@touch $@
 
 .venv/.ready-dev: pyproject.toml constraints.txt scripts/setup_environment.py
-	$(PYTHON) scripts/setup_environment.py fast cluster records seismic roads xlsx dev crosscheck
+	$(PYTHON) scripts/setup_environment.py fast cluster records seismic roads xlsx docs dev crosscheck
 	@touch $@ .venv/.ready-run
 
 demo: .venv/.ready-run
 	$(BIN)/trundle run examples/paper/study.toml --out results/paper
 
 check: .venv/.ready-dev
-	$(BIN)/ruff format --check src tests scripts benchmarks examples
-	$(BIN)/ruff check src tests scripts benchmarks examples
+	$(BIN)/ruff format --check src tests scripts benchmarks examples docs/_ext docs/conf.py
+	$(BIN)/ruff check src tests scripts benchmarks examples docs/_ext docs/conf.py
 	$(BIN)/lint-imports --no-cache
 	$(BIN)/basedpyright --pythonpath $(BIN)/python
 	$(BIN)/python -m numpydoc lint $$(git ls-files "src/*.py")
@@ -80,8 +80,8 @@ dist:
 	$(PYTHON) scripts/build_distributions.py
 
 docs: .venv/.ready-dev
-	$(BIN)/python -m sphinx -q -b html docs build/docs
-	@echo "reference: build/docs/index.html"
+	$(BIN)/python -m sphinx -q -W --keep-going -j auto -b html -d build/docs-kept docs build/docs
+	@echo "manual: build/docs/index.html"
 
 clean:
 	rm -rf .venv results build dist

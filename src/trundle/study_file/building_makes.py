@@ -28,6 +28,7 @@ from trundle.study_file.fields import (
     Angle,
     AreaDensity,
     CrossArea,
+    Density,
     Factor,
     Line,
     Load,
@@ -35,58 +36,115 @@ from trundle.study_file.fields import (
     NonNegativeLength,
     Number,
     PositiveLength,
+    Pressure,
+    Ratio,
     SecondMoment,
     Section,
 )
 
-__all__ = ["PlateSection", "ProfileSection", "materials_of", "plates_of", "profiles_of"]
+__all__ = [
+    "MaterialSection",
+    "PlateSection",
+    "ProfileSection",
+    "materials_of",
+    "plates_of",
+    "profiles_of",
+]
 
 _GRAVITY = 9.80665  # m/s2, standard gravity
+
+
+class MaterialSection(Section):
+    """An isotropic material, with its dynamic modulus."""
+
+    elastic_modulus: Pressure
+    """Dynamic modulus of elasticity."""
+    poisson_ratio: Annotated[Number, Field(ge=0.0, lt=0.5)] = 0.2
+    """Poisson's ratio."""
+    density: Density
+    """Mass by volume."""
+    damping_ratio: Ratio | None = None
+    """Ratio of critical damping, for damping by material."""
 
 
 class ProfileSection(Section):
     """A cross-section by its shape and sizes, or a rolled one by its name."""
 
     shape: Literal["rectangle", "circle", "tube", "i", "t", "box", "rolled", "own"]
+    """Which shape it has; the shape says which sizes it takes."""
     material: Name
+    """Of [building.materials], or steel."""
     stiffness_factor: Factor = 1.0
+    """Times the stiffness, as for cracking; the mass stays."""
     width: PositiveLength | None = None
+    """Across."""
     depth: PositiveLength | None = None
+    """Upright."""
     diameter: PositiveLength | None = None
+    """Of a circle or a tube."""
     wall: PositiveLength | None = None
+    """Thickness of a tube's wall."""
     web: PositiveLength | None = None
+    """Thickness of the web."""
     flange: PositiveLength | None = None
+    """Thickness of the flanges."""
     radius: NonNegativeLength | None = None
+    """Of the fillets of an i."""
     rolled: Line | None = None
+    """Name of a rolled section, IPE, HEA, HEB or W."""
     area: CrossArea | None = None
+    """Area of the cross-section."""
     inertia_y: SecondMoment | None = None
+    """Second moment of area about y."""
     inertia_z: SecondMoment | None = None
+    """Second moment of area about z."""
     torsion_constant: SecondMoment | None = None
+    """Saint-Venant's constant."""
     shear_area_y: CrossArea | None = None
+    """Shear area along y; it does not shear unless given."""
     shear_area_z: CrossArea | None = None
+    """Shear area along z; it does not shear unless given."""
 
 
 class PlateSection(Section):
     """What slabs, walls and ramps are made of, with the mass that lies on them."""
 
     kind: Literal["solid", "ribbed", "waffle", "hollow_core", "composite_deck"] = "solid"
+    """What kind it is; the kind says which sizes it takes."""
     material: Name
+    """Of [building.materials], or steel."""
     stiffness_factor: Factor = 1.0
+    """Times the stiffness, as for cracking; the mass stays."""
     superimposed_mass: AreaDensity = 0.0
+    """What lies on it permanently: mass without stiffness."""
     imposed_load: Load = 0.0
+    """What may lie on it, as a load."""
     imposed_share: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.1
+    """Share of the imposed load that moves with it."""
     direction: Angle = 0.0
+    """Of its ribs, from x."""
     thickness: PositiveLength | None = None
+    """Of a solid plate, or of planks."""
     plate: PositiveLength | None = None
+    """Thickness of the plate over ribs."""
     rib_width: PositiveLength | None = None
+    """Width of ribs."""
     rib_depth: PositiveLength | None = None
+    """Depth of ribs below the plate."""
     spacing: PositiveLength | None = None
+    """Distance of ribs or voids."""
     spacing_y: PositiveLength | None = None
+    """Distance of a waffle's ribs along y; spacing unless given."""
     depth: PositiveLength | None = None
+    """Of a composite deck, to its top."""
     void: PositiveLength | None = None
+    """Diameter of voids."""
     topping: NonNegativeLength | None = None
+    """Thickness of what is cast on planks."""
     deck_height: PositiveLength | None = None
+    """Height of the deck's ribs."""
     deck_mass: AreaDensity | None = None
+    """Of the steel deck."""
 
     @property
     def lying_on_it(self) -> float:

@@ -64,14 +64,18 @@ class SurfaceSection(Section):
     """What is stood on, by height, by groups of elements, or both."""
 
     name: Name
+    """How routes, points and maps call it."""
     height: Length | None = None
+    """Of the level."""
     groups: tuple[Line, ...] = ()
+    """Names of properties and groups of its elements."""
 
 
 class _FromFile(Section):
     """What all models of other programs have."""
 
     surface: tuple[SurfaceSection, ...] = ()
+    """What wheels and points stand on; every level unless given."""
 
     @property
     def choices(self) -> tuple[SurfaceChoice, ...]:
@@ -83,43 +87,66 @@ class ModelSection(_FromFile):
     """A model that another program wrote, in one file."""
 
     kind: Literal["nastran", "sap2000", "etabs", "model"]
+    """Whose format it is; model is told by the file."""
     file: Line
+    """The model, beside the study."""
     units: UnitsText | None = None
+    """Of the file, where it does not state them: "kN, m"."""
     ignore: tuple[Line, ...] = ()
+    """Cards, tables and statements that are nothing of the structure."""
 
 
 class GmshSection(_FromFile, MeshMakes):
     """A mesh, and what each of its groups is."""
 
     kind: Literal["gmsh"]
+    """A mesh of gmsh."""
     file: Line
+    """The mesh, beside the study."""
     units: UnitsText
+    """Of the file; lengths of the mesh are in them."""
     group: tuple[GroupSection, ...]
+    """What each physical group is."""
 
 
 class MatricesSection(_FromFile):
     """Matrices of another program, and the nodes of their rows."""
 
     kind: Literal["matrices"]
+    """Matrices of another program."""
     units: UnitsText
+    """Of the files."""
     stiffness: Line
+    """File of the stiffness matrix."""
     mass: Line
+    """File of the mass matrix."""
     nodes: Line
+    """File of the nodes of its rows."""
     elements: Line | None = None
+    """File of the elements, for surfaces and pictures."""
 
 
 class ModesSection(_FromFile):
     """Modes alone, of another program or of a test."""
 
     kind: Literal["modes"]
+    """Modes alone."""
     units: UnitsText | None = None
+    """Of the files, where they do not state them."""
     file: Line | None = None
+    """One file with all, in a universal file, say."""
     frequencies: Line | None = None
+    """File of the frequencies."""
     shapes: Line | None = None
+    """File of the shapes."""
     nodes: Line | None = None
+    """File of the nodes."""
     elements: Line | None = None
+    """File of the elements."""
     scaled_to: Literal["unit mass", "modal mass"] = "modal mass"
+    """Whether shapes are scaled to unit mass, or come with modal masses."""
     complete_to: Frequency | None = None
+    """Frequency below which no mode is missing."""
 
 
 AnyModel: TypeAlias = ModelSection | GmshSection | MatricesSection | ModesSection

@@ -7,10 +7,9 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 from pydantic_core import PydanticCustomError
 
-from trundle.study_file.building_makes import PlateSection, ProfileSection
+from trundle.study_file.building_makes import MaterialSection, PlateSection, ProfileSection
 from trundle.study_file.fields import (
     Angle,
-    Density,
     Flag,
     GridPlace,
     Length,
@@ -18,11 +17,8 @@ from trundle.study_file.fields import (
     LineDensity,
     Mass,
     Name,
-    Number,
     Place,
     PositiveLength,
-    Pressure,
-    Ratio,
     RotationalStiffness,
     Section,
     Stiffness,
@@ -46,170 +42,228 @@ def _metres(unit: Any) -> float:
     return units[unit]
 
 
-class MaterialSection(Section):
-    """An isotropic material, with its dynamic modulus."""
-
-    elastic_modulus: Pressure
-    poisson_ratio: Annotated[Number, Field(ge=0.0, lt=0.5)] = 0.2
-    density: Density
-    damping_ratio: Ratio | None = None
-
-
 class StoreySection(Section):
     """A level: the height of the mid-plane of its slabs."""
 
     name: Name
+    """How parts, routes, points and maps call it."""
     level: Length
+    """Height of the mid-plane of its slabs."""
 
 
 class GridSection(Section):
     """Grid lines by name: at an x, at a y, or through two places."""
 
     x: dict[Name, Length] = Field(default_factory=dict)
+    """Names of lines, and the x at which each lies."""
     y: dict[Name, Length] = Field(default_factory=dict)
+    """Names of lines, and the y at which each lies."""
     lines: dict[Name, tuple[Place, Place]] = Field(default_factory=dict)
+    """Names of skewed lines, and two places on each."""
 
 
 class SlabSection(Section):
     """An area of slab, with openings."""
 
     on: Name
+    """Its storey."""
     plate: Name
+    """Of [building.plates]."""
     outline: Corners
+    """Its corners."""
     openings: tuple[Corners, ...] = ()
+    """Corners of each opening."""
     panel: Flag = False
+    """Whether it takes the place of a slab that lies there."""
 
 
 class BeamMake(Section):
     """What a beam is, wherever it runs."""
 
     section: Name
+    """Of [building.sections]."""
     below: Flag = True
+    """Whether its top meets the slab's underside, or it lies in its mid-plane."""
     hinged: Literal["none", "start", "end", "both"] = "none"
+    """Which ends transmit no bending moment."""
 
 
 class BeamSection(BeamMake):
     """A beam along a line, below the slab or in its plane."""
 
     on: Name
+    """Its storey or ramp."""
     along: Path
+    """Corners of its line."""
 
 
 class SpringsSection(Section):
     """Six springs to the ground."""
 
     ux: Stiffness = 0.0
+    """Along x."""
     uy: Stiffness = 0.0
+    """Along y."""
     uz: Stiffness = 0.0
+    """Upright."""
     rx: RotationalStiffness = 0.0
+    """About x."""
     ry: RotationalStiffness = 0.0
+    """About y."""
     rz: RotationalStiffness = 0.0
+    """About the vertical."""
 
 
 class LineSpringsSection(Section):
     """Three springs to the ground on every metre of a line."""
 
     ux: StiffnessPerMetre = 0.0
+    """Along x, of every metre."""
     uy: StiffnessPerMetre = 0.0
+    """Along y, of every metre."""
     uz: StiffnessPerMetre = 0.0
+    """Upright, of every metre."""
 
 
 class ColumnMake(Section):
     """What a column is, wherever it stands."""
 
     section: Name
+    """Of [building.sections]."""
     from_: Annotated[Name, Field(alias="from")]
+    """Storey of its foot."""
     to: Name
+    """Storey of its head."""
     base: Literal["fixed", "pinned"] | SpringsSection | None = None
+    """What its foot stands on; on a slab, a beam or a wall unless given."""
     cap: Literal["fixed", "pinned"] | SpringsSection | None = None
+    """What holds its head; the slab alone unless given."""
     head: Literal["rigid", "point"] = "rigid"
+    """Whether slabs move with its cross-section, or are held at one node."""
 
 
 class ColumnSection(ColumnMake):
     """A column at one place or several, from storey to storey."""
 
     at: Places | Literal["grid"]
+    """Where it stands, places, or every crossing of the grid."""
     angle: Angle = 0.0
+    """By which it is turned in plan; its depth lies along x without."""
 
 
 class WallMake(Section):
     """What a wall is, wherever it runs."""
 
     plate: Name
+    """Of [building.plates]."""
     from_: Annotated[Name, Field(alias="from")]
+    """Storey of its foot."""
     to: Name
+    """Storey of its top."""
     base: Literal["fixed", "pinned"] | LineSpringsSection | None = None
+    """What its foot stands on; on a slab, a beam or a wall unless given."""
 
 
 class WallSection(WallMake):
     """A wall along a line, from storey to storey."""
 
     along: Path
+    """Corners of its line."""
 
 
 class BraceSection(Section):
     """A member between two places, on the same storey or on two."""
 
     section: Name
+    """Of [building.sections]."""
     start: GridPlace
+    """Where it starts in plan."""
     end: GridPlace
+    """Where it ends in plan."""
     on: tuple[Name, Name]
+    """Storeys of both ends."""
     hinged: Flag = True
+    """Whether its ends transmit no bending moment."""
 
 
 class RampSection(Section):
     """A slab that rises from its lower edge, two corners, to its upper one, the other two."""
 
     name: Name
+    """How routes, points and maps call it."""
     plate: Name
+    """Of [building.plates]."""
     outline: Annotated[tuple[GridPlace, ...], Field(min_length=4, max_length=4)]
+    """Both ends of its lower edge, then of its upper one."""
     from_: Annotated[Name, Field(alias="from")]
+    """Storey of its lower edge."""
     to: Name
+    """Storey of its upper edge."""
 
 
 class SupportSection(Section):
     """What holds a line or places of a floor: any of six dofs, or springs."""
 
     on: Name
+    """Its storey or ramp."""
     along: Path | None = None
+    """Line that is held."""
     at: Places | None = None
+    """Places that are held, in place of a line."""
     hold: Literal["roller", "pinned", "fixed"] | tuple[Dof, ...] = ()
+    """What is held: a word, or any of the six dofs."""
     angle: Angle = 0.0
+    """By which its axes are turned in plan."""
     springs: SpringsSection | LineSpringsSection | None = None
+    """Springs to the ground; of a line, by the metre."""
 
 
 class MassSection(Section):
     """Mass at places, or along a line."""
 
     on: Name
+    """Its storey or ramp."""
     along: Path | None = None
+    """Line on which it lies."""
     at: Places | None = None
+    """Places where it is, in place of a line."""
     mass: Mass | None = None
+    """At each place."""
     mass_per_metre: LineDensity | None = None
+    """Along the line."""
 
 
 class SymmetrySection(Section):
     """A vertical plane at which the model ends."""
 
     axis: Literal["x", "y"] | None = None
+    """Axis across which the plane lies."""
     at: Length | None = None
+    """Where it lies on that axis."""
     along: Annotated[tuple[GridPlace, ...], Field(min_length=2, max_length=2)] | None = None
+    """Two places of the plane, in place of both."""
 
 
 class RefineSection(Section):
     """Smaller elements along a line, or round places."""
 
     on: Name | None = None
+    """Storey or ramp; every one unless given."""
     along: Path | None = None
+    """Line along which elements are smaller."""
     at: Places | None = None
+    """Places round which elements are smaller, in place of a line."""
     size: PositiveLength
+    """Largest element edge there."""
     reach: PositiveLength = 1.0
+    """How far from it."""
 
 
 class Layer(Section):
     """A layer of a drawing."""
 
     layer: Line
+    """Its name in the drawing."""
 
     @property
     def own(self) -> dict[str, Any]:
@@ -221,7 +275,9 @@ class DrawnSlabs(Layer):
     """Slabs that a layer outlines."""
 
     plate: Name
+    """Of [building.plates]."""
     panel: Flag = False
+    """Whether it takes the place of a slab that lies there."""
 
     def table(self, **drawn: Any) -> SlabSection:
         """Return the table of one of them."""
@@ -261,42 +317,77 @@ class DrawingSection(Section):
     """A DXF drawing of one storey, and what its layers are."""
 
     file: Line
+    """The drawing (DXF), beside the study."""
     on: Name
+    """Its storey."""
     unit: Annotated[float | None, BeforeValidator(_metres)] = None
+    """Of the drawing, where it does not say it."""
     origin: Place = (0.0, 0.0)
+    """Place of the drawing that is x = y = 0."""
     slab: tuple[DrawnSlabs, ...] = ()
+    """Layers that outline slabs."""
     opening: tuple[DrawnOpenings, ...] = ()
+    """Layers that outline openings."""
     column: tuple[DrawnColumns, ...] = ()
+    """Layers that show columns."""
     beam: tuple[DrawnBeams, ...] = ()
+    """Layers of the lines of beams."""
     wall: tuple[DrawnWalls, ...] = ()
+    """Layers of the lines of walls."""
 
 
 class BuildingSection(Section):
     """A building of storeys."""
 
     kind: Literal["storeys"] = "storeys"
+    """A building of storeys."""
     name: Line = "building"
+    """What it is called."""
     mesh_size: PositiveLength
+    """Largest element edge."""
     elements: Literal["quadrilaterals", "triangles"] = "quadrilaterals"
+    """What slabs are meshed with."""
     size_at_routes: PositiveLength | None = None
+    """Largest element edge along routes."""
     size_at_points: PositiveLength | None = None
+    """Largest element edge round points."""
     size_at_supports: PositiveLength | None = None
+    """Largest element edge at supports, columns and walls."""
     nodes_at_points: Flag = False
+    """Whether nodes lie at points."""
     edges_along_routes: Flag = False
+    """Whether edges of elements follow routes."""
     north: Angle | None = None
+    """Where north is on the plan, for pictures."""
     materials: dict[Name, MaterialSection] = Field(default_factory=dict)
+    """Materials by name; steel is there."""
     sections: dict[Name, ProfileSection] = Field(default_factory=dict)
+    """Cross-sections by name."""
     plates: dict[Name, PlateSection] = Field(default_factory=dict)
+    """Plates by name."""
     grid: GridSection = GridSection()
+    """Grid lines by name."""
     storey: Annotated[tuple[StoreySection, ...], Field(min_length=1)]
+    """Its storeys, from below to above."""
     slab: tuple[SlabSection, ...] = ()
+    """Areas of slab."""
     beam: tuple[BeamSection, ...] = ()
+    """Beams along lines."""
     column: tuple[ColumnSection, ...] = ()
+    """Columns from storey to storey."""
     wall: tuple[WallSection, ...] = ()
+    """Walls from storey to storey."""
     brace: tuple[BraceSection, ...] = ()
+    """Members between two places."""
     ramp: tuple[RampSection, ...] = ()
+    """Slabs that rise from edge to edge."""
     support: tuple[SupportSection, ...] = ()
+    """What holds floors."""
     mass: tuple[MassSection, ...] = ()
+    """Masses at places and along lines."""
     symmetry: tuple[SymmetrySection, ...] = ()
+    """Vertical planes at which the model ends."""
     refine: tuple[RefineSection, ...] = ()
+    """Where elements are smaller."""
     drawing: tuple[DrawingSection, ...] = ()
+    """Drawings of storeys, and what their layers are."""

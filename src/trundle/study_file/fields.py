@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Strict
@@ -41,11 +42,13 @@ __all__ = [
     "Place",
     "PositiveLength",
     "Pressure",
+    "Quantity",
     "Rate",
     "Ratio",
     "RotaryInertia",
     "RotationalStiffness",
     "Roughness",
+    "Rule",
     "SecondMoment",
     "Section",
     "Speed",
@@ -59,9 +62,14 @@ __all__ = [
 
 
 class Section(BaseModel):
-    """Base of every section: unknown keys are mistakes, values are frozen."""
+    """Base of every section: unknown keys are mistakes, values are frozen.
 
-    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+    What stands below a field says what it means; the reference of study files is made of it.
+    """
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, arbitrary_types_allowed=True, use_attribute_docstrings=True
+    )
 
 
 # What no vehicle, road or floor exceeds: a value beyond is a slip of the unit or the key.
@@ -96,31 +104,61 @@ _LARGEST = {
 _SMALLEST = {"speed": 1e-10, "pressure": 1e5, "wavenumber": 1e-4}
 
 
-def _quantity(dimension: str) -> BeforeValidator:
-    unit = DIMENSIONS[dimension][0].replace("**", "")
-    largest, smallest = _LARGEST[dimension], _SMALLEST.get(dimension, 0.0)
+@dataclass(frozen=True)
+class Quantity:
+    """Read a number with its unit, and hold of what dimension it is.
 
-    def read(value: Any) -> float:
+    Attributes
+    ----------
+    dimension : str
+        One of `trundle.units.DIMENSIONS`.
+    """
+
+    dimension: str
+
+    def __call__(self, value: Any) -> float:
+        """Return the number in SI units."""
+        unit = DIMENSIONS[self.dimension][0].replace("**", "")
+        largest, smallest = _LARGEST[self.dimension], _SMALLEST.get(self.dimension, 0.0)
         try:
-            number = to_si(value, dimension)
+            number = to_si(value, self.dimension)
         except InputError as error:
             raise PydanticCustomError("quantity", "{rule}", {"rule": str(error)}) from None
         if abs(number) > largest or 0.0 < abs(number) < smallest:
             low = f"{smallest:g} to " if smallest else "up to "
-            rule = f"a {dimension} is {low}{largest:g} {unit}; this one is {number:g} {unit}"
+            rule = f"a {self.dimension} is {low}{largest:g} {unit}; this one is {number:g} {unit}"
             raise PydanticCustomError("quantity", "{rule}", {"rule": rule})
         return number
 
-    return BeforeValidator(read)
+
+@dataclass(frozen=True)
+class Rule:
+    """Refuse numbers that break a rule, and hold how it reads.
+
+    Attributes
+    ----------
+    accepts : callable
+        Whether a number keeps it.
+    text : str
+        How messages and the reference of study files say it.
+    """
+
+    accepts: Callable[[float], bool]
+    text: str
+
+    def __call__(self, value: float) -> float:
+        """Return the number as it is."""
+        if not self.accepts(value):
+            raise PydanticCustomError("rule", "{rule}", {"rule": self.text})
+        return value
+
+
+def _quantity(dimension: str) -> BeforeValidator:
+    return BeforeValidator(Quantity(dimension))
 
 
 def _rule(accepts: Callable[[float], bool], text: str) -> AfterValidator:
-    def check(value: float) -> float:
-        if not accepts(value):
-            raise PydanticCustomError("rule", "{rule}", {"rule": text})
-        return value
-
-    return AfterValidator(check)
+    return AfterValidator(Rule(accepts, text))
 
 
 _POSITIVE = _rule(lambda value: value > 0.0, "must be greater than 0")

@@ -12,13 +12,14 @@ from trundle.errors import Problem
 from trundle.imports import GroupMake
 from trundle.structure import DOF_NAMES
 from trundle.study_file.building_makes import (
+    MaterialSection,
     PlateSection,
     ProfileSection,
     materials_of,
     plates_of,
     profiles_of,
 )
-from trundle.study_file.building_tables import Dof, MaterialSection, SpringsSection
+from trundle.study_file.building_tables import Dof, SpringsSection
 from trundle.study_file.fields import Flag, Length, Line, Name, Number, Section
 
 __all__ = ["GroupSection", "MeshMakes", "makes_of"]
@@ -30,21 +31,32 @@ class GroupSection(Section):
     """What the elements of a group of a mesh are."""
 
     name: Line
+    """Of a physical group of the mesh."""
     plate: Name | None = None
+    """What its faces are made of."""
     section: Name | None = None
+    """What its lines are."""
     offset: tuple[Length, Length, Length] | None = None
+    """From its nodes to the centroids of its members."""
     up: tuple[Number, Number, Number] | None = None
+    """Where the depth of its members points."""
     hold: Literal["roller", "pinned", "fixed"] | tuple[Dof, ...] = ()
+    """What is held at its nodes."""
     springs: SpringsSection | None = None
+    """Springs to the ground at its nodes."""
     nothing: Flag = False
+    """Whether it is nothing of the structure."""
 
 
 class MeshMakes(Section):
     """Materials, sections and plates that groups of a mesh name."""
 
     materials: dict[Name, MaterialSection] = Field(default_factory=dict)
+    """Materials by name; steel is there."""
     sections: dict[Name, ProfileSection] = Field(default_factory=dict)
+    """Cross-sections by name."""
     plates: dict[Name, PlateSection] = Field(default_factory=dict)
+    """Plates by name."""
 
 
 def makes_of(

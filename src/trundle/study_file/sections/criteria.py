@@ -31,12 +31,19 @@ class CriteriaSection(Section):
     """What the response is held against, and by which method's result."""
 
     curves: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Names of criteria, of the library or of files."""
     method: Name
+    """The method whose result is held against them."""
     percentile: Annotated[Number, Field(gt=0.0, le=100.0)] = 95.0
+    """The level that this share of the runs stays below."""
     averaging: Literal["max_1s", "slow", "fast", "event"] = "max_1s"
+    """The largest RMS over 1 s, slow or fast averages, or one over the event."""
     events: Annotated[Number, Field(ge=1.0, le=1e6)] = 1.0
+    """Passages that a vibration dose is for."""
     files: tuple[Line, ...] = ()
+    """Your own curves, beside the study (TOML, CSV)."""
     shape: Literal["rising", "flat"] = "rising"
+    """Generic curves below 8 Hz: rising, or flat to 1 Hz."""
 
 
 CRITERIA = SectionKind(name="criteria", schema=CriteriaSection, form="table")

@@ -55,13 +55,21 @@ class _Placed(Section):
     """Where a feature lies."""
 
     at: Annotated[tuple[Length, ...], BeforeValidator(_as_list), Field(max_length=_MOST)] = ()
+    """Where it begins, along every route: from its start, or in a survey's chainage."""
     every: PositiveLength | None = None
+    """Distance to the next one of its kind."""
     count: Annotated[int, Field(strict=True, ge=2, le=_MOST)] | None = None
+    """How many there are in all."""
     line: tuple[Place, Place] | None = None
+    """Two places in plan that it lies between, in place of at."""
     skew: Angle = 0.0
+    """Angle by which it lies aslant: the left wheel meets it later."""
     side: Literal["both", "left", "right"] = "both"
+    """Under which wheels it lies."""
     route: Name | None = None
+    """The route on which it lies; every one unless given."""
     roads: tuple[Name, ...] = ()
+    """The roads on which it lies; every one unless given."""
 
     @model_validator(mode="after")
     def _check_place(self) -> Self:
@@ -104,65 +112,95 @@ class JointSection(_Placed):
     """A joint between slabs."""
 
     kind: Literal["joint"]
+    """A joint between slabs."""
     gap: NonNegativeLength = 0.0
+    """Width of the gap."""
     depth: PositiveLength | None = None
+    """Depth of the gap; as deep as the tyre sinks unless given."""
     step: Length = 0.0
+    """Height of the far edge above the near one; negative drops."""
     runout: PositiveLength | None = None
+    """Length over which the far slab returns to the level before; it stays unless given."""
 
 
 class PotholeSection(_Placed):
     """A hole."""
 
     kind: Literal["pothole"]
+    """A hole with a level bottom."""
     length: PositiveLength
+    """From rim to rim."""
     depth: PositiveLength
+    """Depth of its bottom."""
     edge: PositiveLength | None = None
+    """Length of each side; upright unless given."""
 
 
 class PatchSection(_Placed):
     """A patch or a plate."""
 
     kind: Literal["patch"]
+    """A patch or a plate."""
     length: PositiveLength
+    """From foot to foot."""
     height: Length
+    """Of its top; negative lies lower."""
     ramp: PositiveLength | None = None
+    """Length of the ramp at either end; upright unless given."""
 
 
 class HumpSection(_Placed):
     """A bump of half a sine, or a hump of a cosine."""
 
     kind: Literal["bump", "cosine_hump"]
+    """A bump of half a sine, or a hump of h (1 - cos) / 2."""
     length: PositiveLength
+    """From foot to foot."""
     height: Length
+    """Of its crest; negative lies lower."""
 
 
 class KinkSection(_Placed):
     """A change of grade."""
 
     kind: Literal["ramp_kink"]
+    """A change of grade."""
     grade: Grade
+    """Rise by length."""
     length: PositiveLength
+    """Until the road turns back into its former grade."""
     rounding: NonNegativeLength = 0.0
+    """Length over which each turn is rounded."""
 
 
 class RailSection(_Placed):
     """A level crossing of two rails."""
 
     kind: Literal["rail_crossing"]
+    """A level crossing of two rails."""
     flangeway: PositiveLength | None = None
+    """Width of the groove beside each rail; 65 mm unless given."""
     depth: PositiveLength | None = None
+    """Depth of the groove; 40 mm unless given."""
     head: PositiveLength | None = None
+    """Width of a rail's head; 70 mm unless given."""
     proud: Length = 0.0
+    """How far heads stand above the road; negative lies lower."""
     gauge: PositiveLength | None = None
+    """Between the inner sides of the heads; 1.435 m unless given."""
 
 
 class ProtectorSection(_Placed):
     """A cable protector, a threshold, a hose bridge."""
 
     kind: Literal["cable_protector"]
+    """A cable protector, a threshold, a hose bridge: a trapezoid."""
     length: PositiveLength
+    """From foot to foot."""
     height: PositiveLength
+    """Of its top."""
     top: PositiveLength
+    """Length of its top."""
 
 
 FeatureSection: TypeAlias = Annotated[

@@ -48,62 +48,94 @@ class ReferenceFloorSection(Section):
     """The reference unit at a mesh size."""
 
     kind: Literal["reference_unit"]
+    """The stand-in for the factory floor of Pan, Mita and Li (2001)."""
     mesh_size: PositiveLength = 1.0
+    """Largest element edge."""
 
 
 class RectangleSection(Section):
     """Width and depth of a beam or column."""
 
     width: PositiveLength
+    """Across the member; of a column along y."""
     depth: PositiveLength
+    """Upright; of a column along x."""
 
 
 class MaterialSection(Section):
     """An isotropic material."""
 
     elastic_modulus: Pressure
+    """Dynamic modulus of elasticity."""
     poisson_ratio: Annotated[Number, Field(ge=0.0, lt=0.5)] = 0.2
+    """Poisson's ratio."""
     density: Density
+    """Mass by volume, of structure alone."""
 
 
 class EdgesSection(Section):
     """How each edge of the plan is held."""
 
     x_min: EdgeKind = "free"
+    """The edge at the smallest x."""
     x_max: EdgeKind = "free"
+    """The edge at the largest x."""
     y_min: EdgeKind = "free"
+    """The edge at the smallest y."""
     y_max: EdgeKind = "free"
+    """The edge at the largest y."""
 
 
 class PlanFloorSection(Section):
     """A rectangular storey of bays."""
 
     kind: Literal["plan"]
+    """One rectangular storey of bays."""
     mesh_size: PositiveLength
+    """Largest element edge."""
     x_lines: Annotated[tuple[Length, ...], Field(min_length=2)]
+    """Column lines across x, rising; columns stand where lines cross."""
     y_lines: Annotated[tuple[Length, ...], Field(min_length=2)]
+    """Column lines across y, rising."""
     x_extent: tuple[Length, Length] | None = None
+    """Range of the slab along x, where it reaches beyond the outer lines."""
     y_extent: tuple[Length, Length] | None = None
+    """Range of the slab along y, where it reaches beyond the outer lines."""
     slab_thickness: PositiveLength
+    """Thickness of the slab."""
     superimposed_mass: AreaDensity = 0.0
+    """Finishes, machines, stored goods: mass without stiffness."""
     material: MaterialSection
+    """Of slab, beams and columns."""
     beams_x: RectangleSection | None = None
+    """Main beams along x on every y line."""
     beams_y: RectangleSection | None = None
+    """Main beams along y on every x line."""
     secondary_y: RectangleSection | None = None
+    """Secondary beams along y, evenly inside each bay."""
     secondary_per_bay: Annotated[Whole, Field(ge=1, le=50)] = 1
+    """How many secondary beams are in a bay."""
     column: RectangleSection | None = None
+    """Columns; without them the edges must hold the floor."""
     storey_below: NonNegativeLength = 0.0
+    """Length of the columns below, to their fixed feet; 0 leaves them out."""
     storey_above: NonNegativeLength = 0.0
+    """Length of the columns above, to their fixed heads; 0 leaves them out."""
     eccentric_beams: Flag = True
+    """Whether beams hang below the slab, or lie in its mid-plane."""
     column_heads: Literal["point", "rigid"] = "point"
+    """Whether a column meets the slab at one node, or over its cross-section."""
     edges: EdgesSection = EdgesSection()
+    """How each edge of the plan is held; free unless named."""
 
 
 class ModelFloorSection(Section):
     """A model that another program wrote."""
 
     kind: Literal["model"]
+    """A model that another program wrote."""
     file: Line
+    """Its file, beside the study."""
 
 
 FloorSection: TypeAlias = Annotated[

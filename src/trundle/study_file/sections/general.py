@@ -34,9 +34,13 @@ class GeneralSection(Section):
     """Title, seed, number of runs and record length: the keys above the first table."""
 
     title: Annotated[Line, Field(max_length=200)]
+    """What the study is called, in tables and in the report."""
     seed: Annotated[Whole, Field(ge=0, lt=2**63)]
+    """Where random numbers begin: the same seed gives the same result, bit for bit."""
     runs: Annotated[Whole, Field(ge=1, le=_MANY)]
+    """Realisations of the road in every cell of results."""
     duration: Time | None = None
+    """Length of every record; without it each lasts until its vehicles have left."""
 
 
 def fields(draft: Draft) -> dict[str, Any]:

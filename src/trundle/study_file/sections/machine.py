@@ -45,9 +45,13 @@ class RotorSection(Section):
     """A rotor out of balance: by its unbalance, or by a balance grade and its mass."""
 
     speed: Frequency
+    """How fast it turns; rpm is understood."""
     unbalance: MassRadius | None = None
+    """Mass times radius, such as "500 g mm"."""
     grade: Speed | None = None
+    """Balance grade, e omega: "6.3 mm/s" is G 6.3."""
     mass: Annotated[Mass | None, Field(gt=0.0)] = None
+    """Of the rotor, with its grade."""
 
     @model_validator(mode="after")
     def _check_kind(self) -> Self:
@@ -70,10 +74,15 @@ class RunUpSection(Section):
     """A speed that goes evenly from one to another: of a rotor, or of a shaker."""
 
     from_: Annotated[Frequency, Field(alias="from")]
+    """Frequency at the beginning."""
     to: Frequency
+    """Frequency at the end."""
     takes: Time
+    """How long it takes."""
     unbalance: MassRadius = 0.0
+    """Mass times radius; the force grows with the speed squared."""
     amplitude: Force = 0.0
+    """Of a force that does not grow with the speed."""
 
     def force(self) -> MachineForce:
         """Return what it presses with."""
@@ -87,9 +96,13 @@ class BlowsSection(Section):
     """Blows of half a sine, one or one every so often."""
 
     impulse: Impulse
+    """Of one blow."""
     contact_time: Time
+    """How long a blow lasts."""
     every: Time | None = None
+    """Time from blow to blow; there is one unless given."""
     first: AnyTime = 1.0
+    """When the first blow begins."""
 
     def force(self) -> MachineForce:
         """Return what it presses with."""
@@ -103,26 +116,40 @@ class MountsSection(Section):
     """What stands between machine and floor."""
 
     frequency: Frequency
+    """Natural frequency of the machine on its mounts."""
     damping: Ratio
+    """Ratio of critical damping of the mounts."""
 
 
 class MachineSection(Section):
     """A machine on the floor."""
 
     name: GroupName
+    """How results and traffic call it."""
     at: Place | None = None
+    """Where it stands."""
     feet: Annotated[tuple[Place, ...] | None, Field(min_length=1)] = None
+    """Where its feet stand, which share the force; in place of at."""
     on: Name | None = None
+    """Surface on which it stands, where there are several."""
     rotor: RotorSection | None = None
+    """A rotor out of balance."""
     harmonics: Annotated[tuple[tuple[Frequency, _Amplitude], ...] | None, Field(min_length=1)] = (
         None
     )
+    """Frequencies and amplitudes of its force."""
     run_up: RunUpSection | None = None
+    """A speed that goes evenly from one to another."""
     blows: BlowsSection | None = None
+    """Blows of half a sine."""
     mounts: MountsSection | None = None
+    """What stands between it and the floor; nothing unless given."""
     starts: AnyTime = 0.0
+    """When it starts."""
     lasts: Time | None = None
+    """How long it runs; without it, it never stops."""
     random_phase: Flag = True
+    """Whether its phase is drawn anew in every run."""
 
     @model_validator(mode="after")
     def _check_kind(self) -> Self:

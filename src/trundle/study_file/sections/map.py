@@ -44,16 +44,27 @@ class MapSection(Section):
     """What is mapped over the whole floor, by the method that carries the verdict."""
 
     on: Name | Annotated[tuple[Name, ...], Field(min_length=1)] | None = None
+    """Surfaces that are mapped; every one unless given."""
     axes: Annotated[tuple[Axis, ...], Field(min_length=1)] = ("z",)
+    """Motions that are mapped."""
     places: Literal["grid", "nodes"] = "grid"
+    """A grid over every surface, or every node of the mesh."""
     spacing: PositiveLength | None = None
+    """Of the grid; some 300 places unless given."""
     runs: Annotated[Whole, Field(ge=1, le=_MANY)] | None = None
+    """The first of the study's runs; 200 at most unless given."""
     criterion: str | None = None
+    """Whose margin is drawn."""
     traffic: Flag = False
+    """Whether several vehicles at once are mapped too."""
     speeds: Annotated[tuple[Speed, ...], Field(max_length=20)] = ()
+    """Mapped beside those of the routes; the envelope holds them too."""
     every_step: Flag = False
+    """Whether the largest 1 s is looked for at every step, as at a point; slower."""
     peaks: Flag = False
+    """Whether peak accelerations are mapped too."""
     people: Flag = False
+    """Whether response factors and vibration doses are mapped too."""
 
 
 MAP = SectionKind(name="map", schema=MapSection, form="table")

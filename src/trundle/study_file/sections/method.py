@@ -39,27 +39,44 @@ class DampingSection(Section):
     """Damping of the floor: a ratio in every mode, by material, or Rayleigh's two coefficients."""
 
     by_material: Flag = False
+    """Whether a mode is damped by what it strains; ratio is then of what has none."""
     ratio: Ratio | None = None
+    """Ratio of critical damping of every mode."""
     rayleigh_alpha: Rate | None = None
+    """Rayleigh's coefficient of the mass."""
     rayleigh_beta: Time | None = None
+    """Rayleigh's coefficient of the stiffness."""
 
 
 class MethodSection(Section):
     """How vehicle and floor are computed."""
 
     name: GroupName
+    """How results and criteria call it."""
     interaction: Literal["decoupled", "coupled"]
+    """Whether the floor's motion acts back on the vehicle (coupled), or not."""
     integration: Literal["modal", "newmark"] = "modal"
+    """Modal superposition with exact steps, or direct integration by Newmark's method."""
     f_max: Frequency | None = None
+    """Modes are kept to this frequency; needed by modal superposition."""
     precision: Literal["double", "single"] = "double"
+    """Of modal steps; direct integration is always double."""
     response_tolerance: Ratio | None = None
+    """Error within which modes are combined, 0.05 at most; all unless given."""
     dt: Time
+    """Time step; 5 ms shows bands up to 80 Hz."""
     n_max: Wavenumber | None = None
+    """Shortest waves of the road, in place of those of [roughness]."""
     contact_patch: NonNegativeLength | None = None
+    """Length over which a tyre averages, in place of that of [roughness]."""
     damping: DampingSection
+    """Of the floor."""
     contact: Literal["smooth", "hat"] = "smooth"
+    """How a wheel between nodes presses on the mesh: by Hermite's or by linear shapes."""
     entry: Literal["drive_in", "ramp", "static", "abrupt"] = "drive_in"
+    """How wheels come onto the floor: gently, by a ramp before it, standing on it, or at once."""
     entry_length: PositiveLength | None = None
+    """Over which wheels come on and go off: 3 m of drive_in, mesh_size else, unless given."""
 
 
 _COARSEST = 0.05  # error of combined modes that is allowed

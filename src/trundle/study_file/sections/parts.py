@@ -27,13 +27,21 @@ class PartsSection(Section):
     """Planes between parts, or the size of a part."""
 
     cuts_x: tuple[Length, ...] = ()
+    """Planes between parts, across x."""
     cuts_y: tuple[Length, ...] = ()
+    """Planes between parts, across y."""
     cuts_z: tuple[Length, ...] = ()
+    """Planes between parts, across z."""
     storeys: Flag = False
+    """Whether a building is cut halfway between its storeys."""
     nodes: Annotated[Whole, Field(ge=100, le=1_000_000)] | None = None
+    """Halves of halves until no part has more nodes, in place of planes."""
     band: _BAND = 2.0
+    """Own modes of parts are kept to so many times the highest f_max of the methods."""
     seam_band: _BAND = 5.0
+    """Own modes of long seams are kept to so many times it."""
     near: PositiveLength | None = None
+    """Parts farther than this from routes, points and maps are kept to less."""
 
 
 PARTS = SectionKind(name="parts", schema=PartsSection, form="table")

@@ -42,19 +42,28 @@ class IsolatorSection(Section):
     """What stands between floor and tool: a mass on a spring and a damper, or a table."""
 
     frequency: Frequency | None = None
+    """Natural frequency of the mass on its spring."""
     damping: Ratio | None = None
+    """Ratio of critical damping."""
     table: Annotated[tuple[tuple[Frequency, Factor], ...], Field(min_length=2)] | None = None
+    """Frequencies, and motion behind over motion before, in place of both."""
 
 
 class PointSection(Section):
     """A place where the response is read, on the floor or behind an isolator there."""
 
     name: Name
+    """How results call it."""
     at: Place = (0.0, 0.0)
+    """Where it is, in plan."""
     drawn: Line | None = None
+    """Layer of the building's drawing that shows it, in place of at."""
     on: Name | None = None
+    """Surface on which it is, where there are several."""
     axes: Annotated[tuple[Axis, ...], Field(min_length=1)] = ("z",)
+    """Motions that are read there; beside z they are points of their own."""
     isolator: IsolatorSection | None = None
+    """What stands between floor and tool; its own motion is then assessed."""
 
     @model_validator(mode="after")
     def _check_place(self) -> Self:

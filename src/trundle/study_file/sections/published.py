@@ -27,35 +27,50 @@ class PrintedSection(Section):
     """A published pair of values to hold beside ours."""
 
     case: Name
+    """Route or traffic that it is of."""
     road: str
+    """Label of the road that it is of."""
     method: Name
+    """Method that it is of."""
     peak_acceleration: Acceleration
+    """The printed peak acceleration."""
     rms_velocity: Speed
+    """The printed RMS velocity."""
 
 
 class PrintedBoundSection(Section):
     """A published upper bound to hold beside ours."""
 
     bound: Literal["single", "absolute maximum", "multiple vehicles"]
+    """What bound it is."""
     road: str
+    """Label of the road that it is of."""
     method: Name
+    """Method that it is of."""
     peak_acceleration: Acceleration
+    """The printed peak acceleration."""
     rms_velocity: Speed
+    """The printed RMS velocity."""
 
 
 class PublicationSection(Section):
     """What a publication says of this study: numbers of its figures and tables, its sources."""
 
     numbers: dict[Name, Line] = Field(default_factory=dict[Name, Line])
+    """Numbers of the publication's figures and tables, by what they show."""
     force_speeds: Annotated[tuple[Speed, ...], Field(max_length=10)] = ()
+    """Speeds at which contact forces are drawn."""
     sources: tuple[Line, ...] = ()
+    """References that the report lists."""
 
 
 class NoteSection(Section):
     """A note that the report prints."""
 
     title: Annotated[Line, Field(max_length=200)]
+    """Heading of the note."""
     text: Annotated[str, Field(min_length=1, max_length=5000)]
+    """What it says."""
 
 
 PRINTED = SectionKind(name="printed", schema=PrintedSection, form="list")

@@ -34,15 +34,25 @@ class ReportSection(Section):
     """Who the report is for, who wrote it, and its units."""
 
     client: Short = ""
+    """Whom the report is for."""
     job: Short = ""
+    """Number or name of the job."""
     revision: Short = ""
+    """Revision of the report."""
     date: Annotated[Short, BeforeValidator(_as_text)] = ""
+    """Date of the report; as it is written here."""
     author: Short = ""
+    """Who wrote it."""
     logo: Line = ""
+    """Picture beside the study, PNG or JPEG, on the front."""
     acceleration: Literal["gal", "m/s2", "mm/s2", "mg", "in/s2"] = "gal"
+    """Unit of acceleration in the report."""
     velocity: Literal["um/s", "mm/s", "m/s", "mil/s", "in/s"] = "um/s"
+    """Unit of velocity in the report."""
     displacement: Literal["um", "mm", "m", "mil", "in"] = "um"
+    """Unit of displacement in the report."""
     load: Literal["t", "kN"] = "t"
+    """Unit of axle loads in the report."""
 
 
 REPORT = SectionKind(name="report", schema=ReportSection, form="table")

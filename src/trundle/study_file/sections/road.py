@@ -52,20 +52,35 @@ class RoadSection(Section):
     """A road: a class, a roughness, a floor's flatness, a measured profile, or smooth."""
 
     name: Name | None = None
+    """Label of the road, in place of its own."""
     class_: Annotated[_Class | None, Field(alias="class")] = None
+    """Class of ISO 8608, from A (smooth) to H."""
     level: Literal["lower", "geometric_mean", "upper"] = "geometric_mean"
+    """Where in the class it lies."""
     waviness: Annotated[Number, Field(ge=1.0, le=4.0)] = 2.0
+    """Exponent w of the spectrum, Gd(n) = Gd(n0) (n/n0)^-w."""
     roughness: Roughness | None = None
+    """Gd(n0) of a straight spectrum, in place of a class."""
     flatness: Line | None = None
+    """Class of a floor's flatness: "FF 50", "FF 50/FL 30", "FM 2", "DIN 18202 line 3"."""
     smooth: Flag = False
+    """Whether it has no roughness: what features do by themselves."""
     file: Line | None = None
+    """A measured profile, beside the study."""
     from_: Annotated[Length | None, Field(alias="from")] = None
+    """Station of the file that lies at each route's start, in its own chainage."""
     beyond: Literal["unknown", "mirror", "level"] = "unknown"
+    """The road beyond the survey: unknown, mirrored, or level."""
     station_unit: Line = ""
+    """Unit of stations, where the file does not say it."""
     unit: Line = ""
+    """Unit of heights, where the file does not say it."""
     tracks: tuple[Line, ...] = ()
+    """Columns that are tracks, by name or number; every one unless given."""
     lateral: tuple[Length, ...] = ()
+    """Where tracks lie, to the left of the centre line."""
     detrend: Flag = True
+    """Whether the straight line through each track is taken off."""
 
     @model_validator(mode="after")
     def _check_kind(self) -> Self:
@@ -99,10 +114,15 @@ class RoughnessSection(Section):
     """What waves a synthetic road contains."""
 
     n_min: Wavenumber = 0.011
+    """Longest waves of synthetic roads, in cycles a metre."""
     n_max: Wavenumber = 2.83
+    """Shortest waves, in cycles a metre; beyond 2.83 ISO 8608 is extrapolated."""
     n_max_follows_dt: Flag = True
+    """Whether waves that a time step cannot show are cut off, or refused."""
     contact_patch: NonNegativeLength = 0.0
+    """Length over which a tyre averages the road; 0 is a point."""
     gaussian_amplitudes: Flag = False
+    """Whether amplitudes are random as well as phases."""
 
 
 ROAD = SectionKind(name="road", schema=RoadSection, form="list", required=True)

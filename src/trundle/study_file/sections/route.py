@@ -62,19 +62,33 @@ class RouteSection(Section):
     """Where a vehicle drives, and how fast."""
 
     name: GroupName
+    """How results, traffic and schedules call it."""
     vehicle: Name
+    """Which of the [vehicle] tables drives it."""
     path: Annotated[tuple[Place, ...], Field(min_length=2)] = _NOWHERE
+    """Places that it leads through."""
     drawn: Line | None = None
+    """Layer of the building's drawing that shows it, in place of path."""
     on: Name | tuple[Name, ...] | None = None
+    """Surface on which it runs, or one of each leg."""
     speed: Speed | None = None
+    """The one speed of the drive."""
     speeds: _OverStations | None = None
+    """Speeds over stations of the way driven; acceleration is steady in between."""
     speeds_over_time: _OverTime | None = None
+    """Speeds over time; acceleration is steady in between."""
     waits: tuple[AnyTime, ...] = ()
+    """How long it waits at each station with speed 0."""
     run_in: NonNegativeLength | None = None
+    """Length of road before the route on which the vehicle comes to vibrate."""
     radius: NonNegativeLength = 0.0
+    """Of arcs in place of corners; 0 leaves them sharp."""
     lane: Length = 0.0
+    """How far to the left of the path the vehicle drives."""
     steering: Steering | None = None
+    """Whether wheels follow the path, or are pulled; pulled where there is a radius."""
     reverse: Flag = False
+    """Whether the vehicle drives last axle first."""
 
     @model_validator(mode="after")
     def _check_path(self) -> Self:
@@ -124,9 +138,13 @@ class TrafficSection(Section):
     """Several routes driven at once."""
 
     name: GroupName
+    """How results call it."""
     routes: Annotated[tuple[Name, ...], Field(min_length=2, max_length=100)]
+    """Routes, walkers and machines that act together."""
     departures: tuple[AnyTime, ...] | None = None
+    """When each begins, later than by itself."""
     headway: Time | None = None
+    """Time from one to the next, in place of departures."""
 
     @model_validator(mode="after")
     def _check_times(self) -> Self:

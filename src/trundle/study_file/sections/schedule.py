@@ -28,15 +28,25 @@ class ScheduleSection(Section):
     """Part of a day's schedule; parts of one name are of one day."""
 
     name: GroupName
+    """The day that it is a part of; parts of one name are of one day."""
     route: Name | None = None
+    """Which route is driven."""
     mix: Annotated[dict[Name, Annotated[Number, Field(gt=0.0)]] | None, Field(min_length=1)] = None
+    """Routes and their shares, in place of one route; drawn at random."""
     times: Annotated[tuple[TimeOfDay, ...] | None, Field(min_length=1)] = None
+    """Times of the day, such as "8:05"."""
     headway: Time | None = None
+    """Even time from one passage to the next."""
     per_hour: Annotated[_Count, Field(gt=0.0)] | None = None
+    """Mean passages an hour, at random."""
     by_hour: Annotated[tuple[_Count, ...] | None, Field(min_length=24, max_length=24)] = None
+    """Mean passages in each of 24 hours, at random."""
     timetable: Line | None = None
+    """File with the columns time and route, beside the study."""
     from_: Annotated[TimeOfDay | None, Field(alias="from")] = None
+    """When a headway or an even rate begins; midnight unless given."""
     to: TimeOfDay | None = None
+    """When it ends; midnight unless given."""
 
     @model_validator(mode="after")
     def _check_way(self) -> Self:

@@ -50,28 +50,46 @@ class BodySection(Section):
     """A rigid body."""
 
     mass: Annotated[Mass, Field(gt=0.0)]
+    """Mass of the body."""
     pitch_inertia: RotaryInertia = 0.0
+    """About the transverse axis through its centre; with 0 it only bounces."""
     centre: Length = 0.0
+    """Distance of its centre of mass behind the front axle."""
     roll_inertia: RotaryInertia = 0.0
+    """About the axis along the vehicle; with 0 it does not roll."""
     aside: Length = 0.0
+    """Distance of its centre of mass to the left of the centre line."""
     height: NonNegativeLength = 0.0
+    """Of its centre of mass above the ground: by it braking makes it pitch."""
 
 
 class AxleSection(Section):
     """An axle."""
 
     body: Annotated[Whole, Field(ge=0)] = 0
+    """Number of the body that it carries, from 0."""
     setback: NonNegativeLength
+    """Distance behind the front axle."""
     stiffness: Annotated[Stiffness, Field(gt=0.0)]
+    """Of the suspension; of suspension and tyre in series where axle_mass is 0."""
     damping: DampingCoefficient = 0.0
+    """Of the suspension, likewise."""
     axle_mass: Mass = 0.0
+    """Unsprung mass between suspension and tyre."""
     tyre_stiffness: Stiffness = 0.0
+    """Of the axle's tyres together; only with an axle_mass."""
     tyre_damping: DampingCoefficient = 0.0
+    """Of the axle's tyres together; only with an axle_mass."""
     track_width: NonNegativeLength = 0.0
+    """Between the wheels of both sides; 0 takes both as one."""
     spring_track: NonNegativeLength = 0.0
+    """Between the springs of both sides; as between the wheels unless given."""
     roll_inertia: RotaryInertia = 0.0
+    """Of the axle about its middle; that of two wheels at its ends unless given."""
     roll_stiffness: RotationalStiffness = 0.0
+    """Of an anti-roll bar between body and axle."""
     independent: Flag = False
+    """Whether each wheel moves by itself, and not on a rigid axle."""
 
     @model_validator(mode="after")
     def _check_wheel(self) -> Self:
@@ -84,32 +102,49 @@ class BogieSection(Section):
     """Axles on one beam that rocks."""
 
     body: Annotated[Whole, Field(ge=0)] = 0
+    """Number of the body that it carries, from 0."""
     setback: Length
+    """Of its suspension, behind the front axle."""
     stiffness: Annotated[Stiffness, Field(gt=0.0)]
+    """Of the suspension between body and beam."""
     damping: DampingCoefficient = 0.0
+    """Of the suspension between body and beam."""
     mass: Annotated[Mass, Field(gt=0.0)]
+    """Of the beam with its axles."""
     pitch_inertia: RotaryInertia = 0.0
+    """Of the beam with its axles; it rocks about the suspension."""
     wheels: Annotated[tuple[Length, ...], Field(min_length=1)]
+    """Places of the axles behind the suspension."""
     tyre_stiffness: Annotated[Stiffness, Field(gt=0.0)]
+    """Of each axle's tyres."""
     tyre_damping: DampingCoefficient = 0.0
+    """Of each axle's tyres."""
 
 
 class HingeSection(Section):
     """A hinge between two bodies."""
 
     bodies: tuple[Whole, Whole]
+    """Numbers of the two bodies, from 0."""
     setback: Length
+    """Distance behind the front axle."""
     rolls_together: Flag = True
+    """Whether both roll as one, as over a fifth wheel."""
 
 
 class PlanarVehicleSection(ChangedSection):
     """A vehicle built from bodies, hinges, axles and bogies."""
 
     kind: Literal["planar"]
+    """A vehicle of bodies, hinges, axles and bogies."""
     bodies: Annotated[tuple[BodySection, ...], Field(min_length=1)]
+    """Its rigid bodies."""
     axles: tuple[AxleSection, ...] = ()
+    """Its axles."""
     bogies: tuple[BogieSection, ...] = ()
+    """Axles on one beam that rocks."""
     hinges: tuple[HingeSection, ...] = ()
+    """What joins its bodies."""
 
     @model_validator(mode="after")
     def _check_axles(self) -> Self:
@@ -123,17 +158,29 @@ class DataSheetSection(ChangedSection):
     """A vehicle as its data sheet tells it."""
 
     kind: Literal["data_sheet"]
+    """A vehicle as its data sheet tells it."""
     axle_loads: Annotated[tuple[AxleLoad, ...], Field(min_length=1)]
+    """What each axle carries, axles and wheels included: "2.65 t" or "26 kN"."""
     laden_axle_loads: tuple[AxleLoad, ...] = ()
+    """The same with the payload."""
     laden: Flag = False
+    """Whether it drives with the payload."""
     wheelbase: PositiveLength | None = None
+    """Between its two axles."""
     setbacks: tuple[NonNegativeLength, ...] = ()
+    """Places of all axles behind the front one, in place of a wheelbase."""
     bounce: Frequency | None = None
+    """Natural frequency of the mass over each axle."""
     hop: Frequency | None = None
+    """Natural frequency of each axle between springs and tyres; with unsprung."""
     damping: Ratio = 0.05
+    """Ratio of critical damping of its bounce."""
     unsprung: tuple[Annotated[Mass, Field(gt=0.0)], ...] = ()
+    """Mass of each axle with its wheels."""
     stiffness: tuple[Annotated[Stiffness, Field(gt=0.0)], ...] = ()
+    """Of each axle's suspension, in place of bounce."""
     tyre_stiffness: tuple[Annotated[Stiffness, Field(gt=0.0)], ...] = ()
+    """Of each axle's tyres, in place of hop."""
 
     @model_validator(mode="after")
     def _check_places(self) -> Self:
@@ -168,9 +215,13 @@ class LibraryVehicleSection(ChangedSection):
     """A vehicle of the library."""
 
     kind: LibraryKind
+    """Its name in the library; 'trundle vehicles' lists them."""
     bounce: Frequency | None = None
+    """In place of the library's; of one that is known by its data sheet."""
     damping: Ratio | None = None
+    """In place of the library's, likewise."""
     tyre_stiffness: tuple[Annotated[Stiffness, Field(gt=0.0)], ...] = ()
+    """In place of the library's, likewise, of each axle."""
 
     @property
     def changes(self) -> dict[str, Any]:

@@ -44,22 +44,39 @@ class WalkerSection(Section):
     """People who walk along a path, or stay at a place."""
 
     name: GroupName
+    """How results and traffic call it."""
     guide: Literal[FOOTFALLS]  # pyright: ignore[reportInvalidTypeForm] - files in a folder
+    """Whose load factors and impulses are taken."""
     pace: Frequency
+    """Steps a second."""
     path: Annotated[tuple[Place, ...] | None, Field(min_length=2)] = None
+    """Places that the walk leads through."""
     at: Place | None = None
+    """Where somebody stays, in place of a path."""
     on: Name | None = None
+    """Surface of the walk, where there are several."""
     speed: Speed | None = None
+    """Of walking; the guide's for the pace unless given."""
     radius: NonNegativeLength = 0.0
+    """Of arcs in place of corners."""
     lasts: Time | None = None
+    """How long somebody stays; 10 s unless given."""
     mass: Annotated[Mass | None, Field(gt=0.0)] = None
+    """Of one person; the guide's unless given."""
     people: Annotated[Whole, Field(ge=1, le=200)] = 1
+    """How many walk one behind the other."""
     headway: AnyTime = 2.0
+    """Time from one to the next."""
     depart: AnyTime = 0.0
+    """When the first begins."""
     pace_spread: Ratio = 0.0
+    """Standard deviation of paces between people, over the mean."""
     mass_spread: Ratio = 0.0
+    """Standard deviation of masses between people, over the mean."""
     step_scatter: Ratio = 0.0
+    """Standard deviation of single steps' durations, over their mean."""
     random_phase: Flag = True
+    """Whether everybody's first step falls at a random time of a step."""
 
     @model_validator(mode="after")
     def _check_where(self) -> Self:

@@ -75,6 +75,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/day.py
 	$(BIN)/python benchmarks/parts.py
 	$(BIN)/python benchmarks/hundred_workers.py
+	$(BIN)/python benchmarks/report.py
 
 dist:
 	$(PYTHON) scripts/build_distributions.py

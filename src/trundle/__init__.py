@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from trundle.report import write_record_report, write_report
     from trundle.study_file import load_study, study_from_text
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _WHERE = {
     "assess_record": "trundle.records",

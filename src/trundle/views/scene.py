@@ -10,9 +10,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.dynamics import Modes
+from trundle.results.modes import FirstModes
 from trundle.run.playback import Playback
 from trundle.structure import Floor, Structure, node_motion
 from trundle.study.model import Study
@@ -29,7 +31,7 @@ def scene_of(
     structure: Structure,
     *,
     title: str,
-    modes: Modes | None = None,
+    modes: Modes | FirstModes | None = None,
     study: Study | None = None,
     playback: Playback | None = None,
 ) -> dict[str, Any]:
@@ -41,8 +43,8 @@ def scene_of(
         The model.
     title : str
         Above the page.
-    modes : Modes, optional
-        To be animated; the first 24 are.
+    modes : Modes or FirstModes, optional
+        To be animated; the first 24 are, or those that results kept.
     study : Study, optional
         Whose routes and points are shown.
     playback : Playback, optional
@@ -59,7 +61,7 @@ def scene_of(
         "heights": [height for _, height in levels],
         "solids": [part for solid in solids_of(structure) for part in _parts(solid, nodes, levels)],
         "supports": _supports(structure),
-        "modes": [] if modes is None else _modes(structure, modes.first(_MODES)),
+        "modes": [] if modes is None else _modes(modes.frequencies, _motion(structure, modes)),
         "routes": [] if study is None else list(_routes(study)),
         "points": [] if study is None else list(_points(study)),
         "crossing": None if playback is None else _crossing(playback),
@@ -106,11 +108,18 @@ def _supports(structure: Structure) -> dict[str, Any]:
     return {"node": _ints(some), "fixed": structure.fixed[some].all(axis=1).tolist()}
 
 
-def _modes(structure: Structure, modes: Modes) -> list[dict[str, Any]]:
-    motions = [modes.seen(node_motion(structure, dof)) for dof in range(6)]
+def _motion(structure: Structure, modes: Modes | FirstModes) -> Float[Array, "nodes 6 shown"]:
+    """Return how all nodes move in the first modes; in none where results kept no such motion."""
+    if isinstance(modes, FirstModes):
+        return np.zeros((len(structure.nodes), 6, 0)) if modes.motion is None else modes.motion
+    few = modes.first(_MODES)
+    return np.stack([few.seen(node_motion(structure, dof)) for dof in range(6)], axis=1)
+
+
+def _modes(frequencies: Array, motions: Float[Array, "nodes 6 shown"]) -> list[dict[str, Any]]:
     found = []
-    for i, f in enumerate(modes.frequencies.tolist()):
-        motion = np.column_stack([one[:, i] for one in motions])
+    for i, f in enumerate(frequencies[: motions.shape[2]].tolist()):
+        motion = motions[:, :, i]
         largest = float(np.abs(motion[:, :3]).max()) or 1.0
         scale = max(float(np.abs(motion).max()) / largest, 1.0)
         found.append({"frequency": f, "scale": scale, **_packed(motion / largest / scale)})

@@ -48,12 +48,12 @@ def written(value: float, digits: int = 3) -> str:
 
 
 def margin_words(value: float) -> str:
-    """Write a margin with two digits, where little room is: below 0.01 nobody asks how far."""
+    """Write a margin to two places, where little room is: below 0.01 nobody asks how far."""
     if np.isnan(value):
         return ""
     if value < 0.01:
         return "<0.01"
-    return f"{value:.2f}" if value < 0.1 else f"{value:.2g}" if value < 100.0 else ">99"
+    return f"{value:.2f}" if value < 10.0 else f"{value:.0f}" if value < 100.0 else ">99"
 
 
 def roughness_words(value: float) -> str:

@@ -25,6 +25,7 @@ from trundle.report.figures import (
     vehicle,
 )
 from trundle.report.html import Picture, embedded, template
+from trundle.report.pages.view import view_page
 from trundle.results.mesh_change import mesh_words
 from trundle.results.parts_change import parts_words
 from trundle.results.study_result import StudyResult
@@ -36,6 +37,7 @@ from trundle.views.conclusions import concluded, conclusion_of_all, lights
 from trundle.views.days import day_views, together_lines
 from trundle.views.map import map_payload
 from trundle.views.printed import bound_rows, comparison_rows
+from trundle.views.scene import scene_of
 from trundle.views.tables import exact_rows, summary_headings, summary_rows, truncation_rows
 from trundle.views.verdicts import headline, verdict_matrix
 from trundle.views.words import road_words
@@ -130,6 +132,7 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         conclusion=conclusion_of_all(conclusions),
         lights=lights(result),
         logo=_logo(study),
+        space=_in_space(result),
         together=together_lines(result),
         days=day_views(result),
         mesh="" if result.mesh is None else mesh_words(result.mesh),
@@ -152,6 +155,14 @@ def _sag(floor: Structure) -> float | None:
         return -1e3 * float(self_weight_deflection(floor).min())
     except InputError:  # it is known by its modes
         return None
+
+
+def _in_space(result: StudyResult) -> str:
+    """Return the page of the model in 3-D with its first modes; nothing for a large model."""
+    if result.modes is None or result.modes.motion is None:
+        return ""
+    study = result.study
+    return view_page(scene_of(study.floor, title=study.title, modes=result.modes, study=study))
 
 
 def _logo(study: Study) -> str:

@@ -23,7 +23,7 @@
     var scale = Math.min((width - 2 * pad) / dx, (Math.min(460, Math.max(260, width)) - 2 * pad) / dy);
     var height = scale * dy + 2 * pad, left = (width - scale * dx) / 2;
     return {
-      width: width, height: height, scale: scale, range: r,
+      width: width, height: height, scale: scale, range: r, named: [],
       x: function (x) { return left + scale * (x - r[0]); },
       y: function (y) { return height - pad - scale * (y - r[2]); },
       back: function (px, py) { return [r[0] + (px - left) / scale, r[2] + (height - pad - py) / scale]; }
@@ -157,6 +157,9 @@
   function label(text, px, py, l) {
     pen.font = "600 12px system-ui, sans-serif";
     var w = pen.measureText(text).width, x = Math.min(Math.max(px + 8, 2), l.width - w - 4);
+    // What would cover an earlier name is left out: the list beside the map has all.
+    if (l.named.some(function (n) { return x < n[0] + n[2] && x + w > n[0] && Math.abs(py - n[1]) < 15; })) { return; }
+    l.named.push([x, py, w + 6]);
     pen.fillStyle = "rgba(255,255,255,.85)";
     pen.fillRect(x - 2, py - 17, w + 4, 15);
     pen.fillStyle = "#000";

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -103,7 +104,7 @@ def test_pins_name_no_host():
 
 @pytest.mark.longest
 def test_a_new_user_installs_the_wheel_and_runs_a_study_and_a_record(built, tmp_path):
-    """In a bare environment, with what pip finds: version, new, check, run, assess, as in the README.
+    """In a bare environment, with what pip finds: version, new, check, run, report, assess, as in the README.
 
     TRUNDLE_PYTHON names another Python than this one.
     """
@@ -133,6 +134,9 @@ def test_a_new_user_installs_the_wheel_and_runs_a_study_and_a_record(built, tmp_
     trundle("check", "unit.toml")
     trundle("run", "unit.toml", "--out", "unit-results")
     assert "VC-A" in (tmp_path / "unit-results" / "report.html").read_text("utf-8")
+    if any(map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))):
+        trundle("report", "unit-results", "--pdf")
+        assert (tmp_path / "unit-results-report.pdf").read_bytes().startswith(b"%PDF-")
     t = np.arange(0.0, 20.0, 0.005)
     rows = zip(t, 30.0 * np.sqrt(2.0) * np.sin(2.0 * np.pi * 10.0 * t), strict=True)
     lines = ["time [s],z [um/s]", *(f"{at:.3f},{value:.4f}" for at, value in rows)]

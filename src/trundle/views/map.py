@@ -147,14 +147,17 @@ def map_payload(result: StudyResult) -> dict[str, Any]:
         return {}
     views = _fitting(map_views(result))
     storeys = list(dict.fromkeys(view.grid.on for view in views))
+    told = [_view(result, view) | {"plan": storeys.index(view.grid.on)} for view in views]
+    with_points = [i for i, one in enumerate(told) if one["points"]]
     return {
+        "chosen": with_points[-1] if with_points else len(told) - 1,
         "names": class_names(views[0].classes),
         "limits": class_limits_of(views[0].classes),
         "criterion": plan.criterion,
         "levels": [
             [how.word, shown(quantity.units, result.study.report)[0]] for quantity, how in mapped()
         ],
-        "views": [_view(result, view) | {"plan": storeys.index(view.grid.on)} for view in views],
+        "views": told,
         "plans": [_plan(plan_lines(result.study, on)) for on in storeys],
         "routes": [
             {"name": name, "x": _short(line[:, 0]), "y": _short(line[:, 1])}

@@ -16,6 +16,7 @@ from trundle.structure.building import (
     Brace,
     Building,
     Column,
+    Joint,
     Mass,
     Ramp,
     Slab,
@@ -290,6 +291,12 @@ def _masses(maker: Maker, place: str, table: Any) -> list[tuple[int | None, Mass
     ]
 
 
+def _joint(maker: Maker, place: str, table: Any) -> list[tuple[int | None, Joint]]:
+    along, to = (maker.places(f"{place}.{key}", getattr(table, key)) for key in ("along", "to"))
+    springs = (table.springs.ux, table.springs.uy, table.springs.uz)
+    return [(None, Joint(on=table.on, along=along, to=to, springs=springs))]
+
+
 _KINDS: dict[str, Callable[[Maker, str, Any], list[tuple[int | None, Any]]]] = {
     "slab": _slab,
     "beam": _beam,
@@ -299,4 +306,5 @@ _KINDS: dict[str, Callable[[Maker, str, Any], list[tuple[int | None, Any]]]] = {
     "ramp": _ramp,
     "support": _supports,
     "mass": _masses,
+    "joint": _joint,
 }

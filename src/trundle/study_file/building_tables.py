@@ -218,6 +218,19 @@ class SupportSection(Section):
     """Springs to the ground; of a line, by the metre."""
 
 
+class JointSection(Section):
+    """What connects two edges across a joint."""
+
+    on: Name
+    """Storey or ramp of both."""
+    along: Path
+    """Edge on one side."""
+    to: Path
+    """Edge that faces it on the other side."""
+    springs: LineSpringsSection
+    """Springs between them, of every metre."""
+
+
 class MassSection(Section):
     """Mass at places, or along a line."""
 
@@ -385,6 +398,8 @@ class BuildingSection(Section):
     """What holds floors."""
     mass: tuple[MassSection, ...] = ()
     """Masses at places and along lines."""
+    joint: tuple[JointSection, ...] = ()
+    """What connects edges across joints."""
     symmetry: tuple[SymmetrySection, ...] = ()
     """Vertical planes at which the model ends."""
     refine: tuple[RefineSection, ...] = ()

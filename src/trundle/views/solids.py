@@ -14,7 +14,7 @@ from jaxtyping import Float, Int
 
 from trundle._typing import Array
 from trundle.structure import BeamGroup, Structure
-from trundle.structure.elements import GROUND, Elements, ReleasedBeams
+from trundle.structure.elements import GROUND, Elements, JointSprings, ReleasedBeams
 from trundle.structure.frames import beam_frames
 
 __all__ = ["Solid", "moved", "solids_of"]
@@ -95,6 +95,8 @@ def _solids(nodes: Array, group: Elements) -> Iterator[Solid]:
         yield _members(nodes, group.beams)
     elif isinstance(group, BeamGroup):
         yield _members(nodes, group)
+    elif isinstance(group, JointSprings):
+        yield _marks(group.name, "spring", np.unique(corners), 0.1)
     elif corners.shape[1] == 2 and GROUND in corners:
         yield _marks(group.name, "spring", np.unique(corners[corners != GROUND]), 0.15)
     elif corners.shape[1] == 1:

@@ -148,6 +148,10 @@ def _draw_members(axes: Axes, building: Building, name: str) -> None:
     for support in building.supports:
         if support.on == name:
             axes.plot(*support.along.T, color="#B22222", linewidth=2.2, linestyle=":", zorder=4)
+    for joint in building.joints:
+        if joint.on == name:
+            for line in (joint.along, joint.to):
+                axes.plot(*line.T, color="#7B3294", linewidth=1.6, linestyle="--", zorder=4)
     for ramp in building.ramps:
         if name in (ramp.bottom, ramp.top):
             axes.add_patch(

@@ -5,6 +5,7 @@ from trundle.structure.building.checks import building_problems
 from trundle.structure.building.gaps import gaps_of
 from trundle.structure.building.held import Base, Mass, Springs, Support
 from trundle.structure.building.in_the_way import in_the_way
+from trundle.structure.building.joint import Joint
 from trundle.structure.building.parts import Beam, Brace, Building, Column, Ramp, Slab, Storey, Wall
 from trundle.structure.building.profile import Profile
 
@@ -14,6 +15,7 @@ __all__ = [
     "Brace",
     "Building",
     "Column",
+    "Joint",
     "Mass",
     "Meshing",
     "Profile",

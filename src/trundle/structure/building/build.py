@@ -14,7 +14,7 @@ from trundle._kinds import kinds_checked
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.building.checks import building_problems
-from trundle.structure.building.holding import heads, held_dofs, masses, springs
+from trundle.structure.building.holding import heads, held_dofs, joints, masses, springs
 from trundle.structure.building.idle import idle_rotations
 from trundle.structure.building.members import (
     SlabThickness,
@@ -132,6 +132,7 @@ def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
     quads, triangles = _faces(building, mesh)
     wall_groups = [ShellGroup(elements=number[e], section=w.section, name=w.name) for w, e in walls]
     grounded = tuple(springs(building, mesh, nodes))
+    joined = tuple(joints(building, mesh))
     stiff = (*quads.values(), *triangles.values(), *wall_groups, *members, *grounded)
     idle = idle_rotations(xyz, stiff, links)
     fixed, angles = held_dofs(building, mesh, nodes, xyz, idle)
@@ -143,7 +144,11 @@ def _assembled(building: Building, mesh: SheetMesh, mesh_size: float) -> Floor:
         beams=tuple(one for one in members if isinstance(one, BeamGroup)),
         springs=grounded,
         masses=tuple(masses(building, mesh)),
-        others=(*triangles.values(), *(o for o in members if not isinstance(o, BeamGroup))),
+        others=(
+            *triangles.values(),
+            *(o for o in members if not isinstance(o, BeamGroup)),
+            *joined,
+        ),
         links=links,
         decks=tuple(_decks(building, xyz, {**quads}, triangles, members)),
         mirrors=building.mirrors,

@@ -1,4 +1,4 @@
-"""Tell mistakes in beams, columns, walls, braces, supports and masses."""
+"""Tell mistakes in beams, columns, walls, braces, supports, masses and joints."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from trundle._typing import Array
 from trundle.errors import Problem
 from trundle.structure.building.check_words import parts, shared_storeys, shown
+from trundle.structure.building.joint import line_problems
 from trundle.structure.building.parts import Building, Column
 from trundle.structure.building.sheets import meets
 from trundle.structure.mesh.planar import SNAP, on_segment
@@ -29,6 +30,7 @@ def joint_problems(building: Building) -> Iterator[Problem]:
     yield from _twice(building)
     yield from _braces(building)
     yield from _on_something(building)
+    yield from line_problems(building.joints)
 
 
 def member_problems(building: Building) -> Iterator[Problem]:
@@ -39,6 +41,8 @@ def member_problems(building: Building) -> Iterator[Problem]:
         for i, part in enumerate(parts(building, kind), start=1):
             if len(part.along) > 1:
                 lines.append((f"{kind}[{i}].along", part.along))
+    for i, joint in enumerate(building.joints, start=1):
+        lines += [(f"joint[{i}].along", joint.along), (f"joint[{i}].to", joint.to)]
     for place, line in lines:
         steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
         if len(line) < 2 or steps.min() < _SHORT:
@@ -188,6 +192,16 @@ def _on_something(building: Building) -> Iterator[Problem]:
                         remedy="move it there",
                     )
                     break
+    for i, joint in enumerate(building.joints, start=1):
+        for key, line in (("along", joint.along), ("to", joint.to)):
+            where = next((p for p in line if not _joint(building, joint.on, p)), None)
+            if where is not None:
+                yield Problem(
+                    place=f"joint[{i}].{key}",
+                    value=f"nothing on {joint.on!r} at ({where[0]:g}, {where[1]:g}) m",
+                    rule="each edge of a joint is on a slab, a beam or a wall",
+                    remedy="move it there",
+                )
     for i, support in enumerate(building.supports, start=1):
         if not any(support.held) and not any(support.springs):
             yield Problem(

@@ -47,9 +47,9 @@ def building_problems(building: Building) -> list[Problem]:
 
 def _far(building: Building) -> Iterator[Problem]:
     """Give places that are further off than any building reaches."""
-    for kind in ("slab", "beam", "wall", "column", "ramp", "support", "mass", "brace"):
+    for kind in ("slab", "beam", "wall", "column", "ramp", "support", "mass", "brace", "joint"):
         for i, part in enumerate(parts(building, kind), start=1):
-            for key in ("outline", "along", "at", "ends"):
+            for key in ("outline", "along", "to", "at", "ends"):
                 places = getattr(part, key, None)
                 if places is not None and np.abs(places).max(initial=0.0) > _FAR:
                     yield Problem(
@@ -90,7 +90,7 @@ def _names(building: Building) -> Iterator[Problem]:
     storeys = [s.name for s in building.storeys]
     asked = [
         (f"{kind}[{i}].on", part.on, building.floors if kind != "slab" else storeys)
-        for kind in ("slab", "beam", "support", "mass")
+        for kind in ("slab", "beam", "support", "mass", "joint")
         for i, part in enumerate(parts(building, kind), start=1)
     ]
     for kind in ("column", "wall", "ramp"):

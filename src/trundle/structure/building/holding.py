@@ -14,14 +14,14 @@ from trundle.structure.building.holds import Holds
 from trundle.structure.building.nodes import Nodes
 from trundle.structure.building.parts import Building
 from trundle.structure.building.sheets import has_slab, passes
-from trundle.structure.elements import GROUND, PointMasses, SpringGroup
+from trundle.structure.elements import GROUND, JointSprings, PointMasses, SpringGroup
 from trundle.structure.links import RigidLinks
 from trundle.structure.mesh.merging import linked
 from trundle.structure.mesh.polygons import covers
 from trundle.structure.mesh.sheet_mesh import SheetMesh
 from trundle.structure.model import MirrorPlane
 
-__all__ = ["heads", "held_dofs", "masses", "springs"]
+__all__ = ["heads", "held_dofs", "joints", "masses", "springs"]
 
 _PINNED = np.array([True, True, True, False, False, False])
 _ACROSS_X = np.array([True, False, False, False, True, True])
@@ -106,6 +106,20 @@ def springs(building: Building, mesh: SheetMesh, nodes: Nodes) -> Iterator[Sprin
         for share, at in _alike(some, length):
             ends = np.stack([at, np.full(len(at), GROUND)], axis=1)
             yield SpringGroup(elements=ends, stiffness=share * stiffness, name=name)
+
+
+def joints(building: Building, mesh: SheetMesh) -> Iterator[JointSprings]:
+    """Give the springs of joints: from every node of one edge to the nearest of the other."""
+    for joint in building.joints:
+        some, length = _pieces(building, mesh, joint.on, joint.along)
+        others, _ = _pieces(building, mesh, joint.on, joint.to)
+        ways = mesh.nodes[some][:, None, :2] - mesh.nodes[others][None, :, :2]
+        nearest = others[np.argmin(np.linalg.norm(ways, axis=2), axis=1)]
+        yield JointSprings(
+            elements=np.stack([some, nearest], axis=1),
+            stiffness=length[:, None] * np.array(joint.springs),
+            name=joint.name,
+        )
 
 
 def masses(building: Building, mesh: SheetMesh) -> Iterator[PointMasses]:

@@ -14,6 +14,7 @@ from jaxtyping import Float
 from trundle._checks import finite, frozen_array, one_of, set_frozen
 from trundle._typing import Array
 from trundle.structure.building.held import Base, Mass, Support
+from trundle.structure.building.joint import Joint
 from trundle.structure.building.profile import Profile
 from trundle.structure.model import MirrorPlane
 from trundle.structure.sections import PlateSection
@@ -275,7 +276,7 @@ class Building:
     ----------
     storeys : tuple of Storey
         From below to above.
-    slabs, beams, columns, walls, braces, ramps, supports, masses, symmetry : tuple
+    slabs, beams, columns, walls, braces, ramps, supports, masses, joints, symmetry : tuple
         Its parts.
     grid : mapping of str to ndarray of float, shape (2, 2)
         Grid lines by name, two places on each [m], for pictures and places like ``A/1``.
@@ -294,6 +295,7 @@ class Building:
     ramps: tuple[Ramp, ...] = ()
     supports: tuple[Support, ...] = ()
     masses: tuple[Mass, ...] = ()
+    joints: tuple[Joint, ...] = ()
     symmetry: tuple[MirrorPlane, ...] = ()
     grid: dict[str, Float[Array, "2 2"]] = field(default_factory=dict[str, Array])
     north: float | None = None

@@ -70,7 +70,7 @@ def _ramp_sheet(building: Building, ramp: Ramp, guides: Guides) -> Sheet:
 
 
 def _lines_on(building: Building, name: str, guides: Guides) -> Iterator[Array]:
-    """Give the lines of beams, supports, masses and guides on a sheet."""
+    """Give the lines of beams, supports, masses, joints and guides on a sheet."""
     yield from (beam.along for beam in building.beams if beam.on == name)
     yield from (line for line in _laid(building, name, guides) if len(line) > 1)
 
@@ -86,6 +86,9 @@ def _laid(building: Building, name: str, guides: Guides) -> Iterator[Array]:
     for part in (*building.supports, *building.masses):
         if part.on == name:
             yield part.along
+    for joint in building.joints:
+        if joint.on == name:
+            yield from (joint.along, joint.to)
     yield from guides.get(name, ())
 
 

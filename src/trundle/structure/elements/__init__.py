@@ -6,6 +6,7 @@ goes to a floor by ``Floor(others=(group, ...))``. One that wheels can stand on 
 
 from trundle.structure.elements.beam import BeamGroup
 from trundle.structure.elements.faces import FaceGroup
+from trundle.structure.elements.joint_spring import JointSprings
 from trundle.structure.elements.node_inertia import NodeInertia
 from trundle.structure.elements.point_mass import PointMasses
 from trundle.structure.elements.protocol import GROUND, Damped, Elements, Standable
@@ -24,6 +25,7 @@ __all__ = [
     "FaceGroup",
     "Hat",
     "Hermite",
+    "JointSprings",
     "Located",
     "NodeInertia",
     "PointMasses",

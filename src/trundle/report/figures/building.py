@@ -145,13 +145,7 @@ def _draw_members(axes: Axes, building: Building, name: str) -> None:
     for column in building.columns:
         if _stands_on(building, column, name):
             axes.add_patch(Polygon(column.footprint, facecolor=_COLUMN, zorder=3))
-    for support in building.supports:
-        if support.on == name:
-            axes.plot(*support.along.T, color="#B22222", linewidth=2.2, linestyle=":", zorder=4)
-    for joint in building.joints:
-        if joint.on == name:
-            for line in (joint.along, joint.to):
-                axes.plot(*line.T, color="#7B3294", linewidth=1.6, linestyle="--", zorder=4)
+    _draw_edges(axes, building, name)
     for ramp in building.ramps:
         if name in (ramp.bottom, ramp.top):
             axes.add_patch(
@@ -167,6 +161,15 @@ def _draw_members(axes: Axes, building: Building, name: str) -> None:
                 fontsize=7,
                 ha="center",
             )
+
+
+def _draw_edges(axes: Axes, building: Building, name: str) -> None:
+    """Draw supports dotted, joints dashed."""
+    lines = [(s.along, "#B22222", ":") for s in building.supports if s.on == name]
+    for joint in building.joints:
+        lines += [(line, "#7B3294", "--") for line in (joint.along, joint.to) if joint.on == name]
+    for line, colour, dashes in lines:
+        axes.plot(*line.T, color=colour, linewidth=2.0, linestyle=dashes, zorder=4)
 
 
 def _stands_on(building: Building, part: Column | Wall, name: str) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import linalg
+from scipy import linalg, sparse
 
 from trundle._typing import Array
 from trundle.dynamics.pencil import Product
@@ -19,7 +19,8 @@ class Krylov:
     """A growing M-orthonormal basis V of a block Krylov space, and ``V^T M A^-1 M V``.
 
     Each step orthogonalises against the two blocks before it, as a Lanczos step does, and once
-    against all, which keeps round-off from bringing found eigenvectors back.
+    against all, which keeps round-off from bringing found eigenvectors back. Where M is no sparse
+    matrix a product with it costs more than reading M V again, and M V is kept.
     """
 
     def __init__(
@@ -39,6 +40,8 @@ class Krylov:
         n_dofs = mass.shape[0]
         self._beside = np.zeros((n_dofs, 0)) if beside is None else beside
         self._basis = np.zeros((n_dofs, capacity + BLOCK), order="F")
+        dear = not sparse.issparse(mass)
+        self._loaded_basis = np.zeros_like(self._basis) if dear else None
         self._projected = np.zeros((capacity + BLOCK, capacity + BLOCK))
         drawn = np.random.default_rng(start).standard_normal((n_dofs, BLOCK))
         first = self._apart(factor.solve(mass @ drawn))
@@ -51,6 +54,8 @@ class Krylov:
             return False
         before, here = self.size, slice(self.size, self.size + BLOCK)
         self._basis[:, here] = self._block
+        if self._loaded_basis is not None:
+            self._loaded_basis[:, here] = self._loaded
         self.size += BLOCK
         basis = self._basis[:, : self.size]
         new = self._apart(self._factor.solve(self._loaded))
@@ -61,7 +66,10 @@ class Krylov:
             overlap[before - BLOCK : before] = self._triangle.T
         near = slice(max(0, before - BLOCK), self.size)
         new -= basis[:, near] @ overlap[near]
-        correction = basis.T @ (self._mass @ new)
+        if self._loaded_basis is not None:
+            correction = self._loaded_basis[:, : self.size].T @ new
+        else:
+            correction = basis.T @ (self._mass @ new)
         new -= basis @ correction
         self._block, self._loaded, self._triangle = _orthonormal(self._mass, new)
         sizes = np.abs(np.diag(self._triangle))

@@ -7,7 +7,6 @@ import pytest
 from hand_made import class_map_of, result_of, study_of
 from matplotlib import rc_context
 from matplotlib.colors import to_rgb
-from matplotlib.contour import ContourSet
 
 from trundle.report.canvas import STYLE, class_colours, new_figure
 from trundle.report.figures import class_plan
@@ -72,14 +71,17 @@ def test_where_nothing_is_known_the_ground_stays_grey():
 
 
 def test_what_is_not_complete_is_not_filled():
-    """Margins above 1, bands missing: neither class is drawn over what is not assessed."""
+    """Margins of 4 and 2, bands of VC-B missing: VC-A is what is known; without either nothing is."""
     _, view = view_of(np.full(8, 4.0))
-    view = replace(view, classes=replace(view.classes, complete=(False, False)))
-    with rc_context(STYLE):
-        figure, (axes,) = new_figure(6.0, 4.0)
-        fill_classes(axes, view)
-    assert not [one for one in axes.collections if isinstance(one, ContourSet)]
-    del figure
+    seen = []
+    for complete in ((True, False), (False, False)):
+        some = replace(view, classes=replace(view.classes, complete=complete))
+        with rc_context(STYLE):
+            figure, (axes,) = new_figure(6.0, 4.0)
+            fill_classes(axes, some)
+            axes.set(xlim=(0.0, 12.0), ylim=(0.0, 6.0))
+            seen.append(colour_at(figure, axes, 8.0, 3.0))
+    np.testing.assert_allclose(seen, [to_rgb(COLOURS[i]) for i in (2, 0)], atol=0.02)
 
 
 def test_the_plan_has_grid_dimensions_points_routes_and_the_worst_place():

@@ -36,14 +36,15 @@ def test_one_point_is_concluded_in_one_sentence_with_what_governs():
     assert conclusion_of_all([one]) == f"tool: {one.words}."
 
 
-def test_the_worst_road_is_what_counts():
-    """Quiet on B, 60 um/s x 3.7 on C: nothing is met, and the road that governs is named."""
-    result = result_of(study_of(TWO_ROADS, CURVES), lambda key: 60e-6 if key.road == "C" else 1e-6)
+@pytest.mark.parametrize("loud", ["B", "C"])
+def test_the_worst_road_is_what_counts(loud):
+    """Quiet on one, 60 um/s x 3.7 on the other: nothing is met, and the road that governs is named."""
+    result = result_of(study_of(TWO_ROADS, CURVES), lambda key: 60e-6 if key.road == loud else 1e-6)
     (one,) = concluded(result)
     light = lights(result)["tool"]["VC-A"]
     assert (one.status, one.met, light.status) == ("fail", None, "fail")
     np.testing.assert_allclose(light.verdict.margin, 50.0 / (3.7 * 60.0), rtol=1e-12)
-    assert light.where == "main, road C"
+    assert light.where == f"main, road {loud}"
     assert one.words.startswith("no velocity criterion is met: VC-A fails with margin 0.225")
 
 

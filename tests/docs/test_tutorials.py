@@ -15,7 +15,7 @@ import trundle as tr
 
 TUTORIALS = Path(__file__).parents[2] / "docs" / "tutorials"
 PAGES = sorted(page for page in TUTORIALS.glob("*.md") if page.stem != "index")
-LONGEST = ("days-traffic", "floor-study")
+LONGEST = ("days-traffic", "floor-study", "notebook", "own-building")
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 NAMED = re.compile(r"# ([\w-]+\.toml)\n")
 CODE = re.compile(r"# ends with code (\d)")

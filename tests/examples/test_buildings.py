@@ -50,7 +50,7 @@ def ran(name):
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=[pytest.mark.longest] * (name in {"car_park", "flat_slab"}))
+        pytest.param(name, marks=[pytest.mark.longest] * (name not in {"steel_floor"}))
         for name in SMALL
     ],
 )

@@ -80,7 +80,7 @@ def test_a_days_events_are_counts_times_shares():
     assert set(np.flatnonzero(night.seconds_above.sum(axis=(1, 2)))) <= {1, 3, 23}
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_a_day_is_in_report_tables_and_folder(tmp_path):
     """What is read back draws the same page; tables and JSON hold the day; maps have its events."""
     result = trucks()

@@ -90,6 +90,7 @@ def test_equal_units_are_reduced_once():
     assert len(pieces.distinct) == 14
 
 
+@pytest.mark.longest
 def test_the_time_and_memory_of_the_factory_are_known_beforehand(monkeypatch):
     """Within a factor of two of what was measured (docs/stack_up_factory.md)."""
     monkeypatch.setenv("TRUNDLE_CACHE", "")

@@ -105,7 +105,7 @@ def test_histories_are_a_row_a_method_and_a_column_a_road():
         for road in "BC"
     ]
     for axes in figure.axes:
-        (line,) = axes.lines
+        line = axes.lines[0]
         t, a = line.get_data()
         np.testing.assert_allclose(a, 10.0 * np.sin(2.0 * np.pi * t), atol=1e-9)
         assert axes.get_xlim() == (0.0, 4.0)

@@ -100,6 +100,7 @@ def test_both_ways_to_carry_a_force_through_a_block_agree(monkeypatch):
             assert difference(getattr(at_once, name), getattr(by_lags, name)) < rtol
 
 
+@pytest.mark.longest
 def test_damping_that_kills_a_mode_within_a_step():
     """Rayleigh damping far beyond critical: against Newmark's method in all dofs, finely stepped."""
     floor = small_floor(mesh_size=2.0)

@@ -83,23 +83,25 @@ def class_plan_figure(study: Study, view: MapView) -> Figure:
     return figure
 
 
-def fill_classes(axes: Axes, view: MapView) -> None:
+def fill_classes(axes: Axes, view: MapView, *, ground: bool = True) -> None:
     """Fill the classes of a map: between places by their margins, beyond them by the nearest.
 
     A class reaches as far as its margin, straight between places on a logarithmic scale, is 1 or
-    more. Where a margin is not known the nearest place says what there is.
+    more. Where a margin is not known the nearest place says what there is, which is drawn below
+    unless `ground` says that it is there.
     """
     grid, classes = view.grid, view.classes
     colours = class_colours(class_limits_of(classes))
-    axes.pcolormesh(
-        grid.x,
-        grid.y,
-        grid.filled(class_ranks(classes).astype(float)),
-        shading="nearest",
-        rasterized=True,
-        cmap=ListedColormap(colours),
-        norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
-    )
+    if ground:
+        axes.pcolormesh(
+            grid.x,
+            grid.y,
+            grid.filled(class_ranks(classes).astype(float)),
+            shading="nearest",
+            rasterized=True,
+            cmap=ListedColormap(colours),
+            norm=BoundaryNorm(np.arange(len(colours) + 1) - 0.5, len(colours)),
+        )
     if min(len(grid.x), len(grid.y)) < 2:
         return
     known = grid.filled(np.where(class_ranks(classes) > 0, 1.0, np.nan))

@@ -111,7 +111,7 @@ def class_map_figure(study: Study, views: list[MapView]) -> Figure:
     for panel, view in zip(panels, views, strict=True):
         levels = class_ranks(view.classes)
         _image(panel, study, view, levels, cmap=ListedColormap(colours), norm=norm)
-        fill_classes(panel, view)
+        fill_classes(panel, view, ground=False)
     shown = sorted({int(r) for view in views for r in class_ranks(view.classes)})
     ranks = shown[::-1]
     legend_below(

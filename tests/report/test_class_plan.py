@@ -123,7 +123,7 @@ def test_a_bar_lasts_as_long_as_a_vehicle_is_on_the_floor():
         draw_passing(axes, result, CellKey("main", "B", "coupled"), "tool", 12.0)
     bar, mark = axes.lines
     on = bar.get_xdata()[np.isfinite(bar.get_ydata())]
-    speed, step = drive.route.law.fastest, 12.0 / 239
+    speed, step = drive.route.law.fastest, 12.0 / 119
     leaves = (drive.route.length + drive.vehicle.length) / speed
     assert on[0] <= 2 * step
     assert on[-1] == pytest.approx(leaves, abs=2 * step)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +26,7 @@ from trundle.traffic import Day
 if TYPE_CHECKING:
     import xarray as xr
 
-__all__ = ["StudyResult", "positions_at", "wheels_at"]
+__all__ = ["StudyResult", "positions_at", "presence", "wheels_at"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -162,6 +162,24 @@ def positions_at(result: StudyResult, key: CellKey, time: float) -> dict[str, li
 def wheels_at(result: StudyResult, key: CellKey, time: float) -> dict[str, int]:
     """Return how many wheels of each vehicle stand on the floor at a time [s]."""
     return {source.name: source.stands_at(time)[1] for source in _acting(result, key)}
+
+
+def presence(
+    result: StudyResult, key: CellKey, times: Sequence[float]
+) -> dict[str, list[tuple[tuple[float, float] | None, int]]]:
+    """Return by source where its front stands [m], and how many wheels are on the floor, at times.
+
+    Parameters
+    ----------
+    result : StudyResult
+        A finished study.
+    key : CellKey
+        Which cell.
+    times : sequence of float
+        Times of the record [s].
+    """
+    acting = _acting(result, key)
+    return {source.name: [source.stands_at(float(t)) for t in times] for source in acting}
 
 
 def _acting(result: StudyResult, key: CellKey) -> tuple[Source, ...]:

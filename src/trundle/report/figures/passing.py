@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -9,11 +11,11 @@ from matplotlib.lines import Line2D
 from trundle._typing import Array
 from trundle.report.canvas import line_look
 from trundle.results.cells import CellKey
-from trundle.results.study_result import StudyResult, positions_at, wheels_at
+from trundle.results.study_result import StudyResult, presence, wheels_at
 
 __all__ = ["draw_passing", "passing_handles"]
 
-_TIMES = 240  # at which it is looked where they are
+_TIMES = 120  # at which it is looked where they are
 _TOP, _APART = 0.985, 0.045  # of a panel's height: the first bar, and how far the next is below
 
 
@@ -34,26 +36,25 @@ def draw_passing(panel: Axes, result: StudyResult, key: CellKey, point: str, end
         End of the record [s].
     """
     times = np.linspace(0.0, end, _TIMES)
-    wheels = [wheels_at(result, key, float(t)) for t in times]
-    places = [positions_at(result, key, float(t)) for t in times]
+    seen = presence(result, key, times.tolist())
     spot = result.study.points[point]
     there = result.study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
     look = panel.get_xaxis_transform()  # x in seconds, y in shares of the height
-    for i, name in enumerate(wheels[0]):
-        on = np.array([count[name] > 0 for count in wheels])
+    for i, stands in enumerate(seen.values()):
+        on = np.array([wheels > 0 for _, wheels in stands])
         if not on.any():
             continue
         colour, _ = line_look(i + 1)
         height = _TOP - _APART * i
         bars = np.where(on, height, np.nan)
         panel.plot(times, bars, color=colour, linewidth=3.0, alpha=0.6, transform=look)
-        nearest = _nearest([one[name] for one in places], there)
+        nearest = _nearest([place for place, _ in stands], there)
         if nearest is not None:
             panel.plot([times[nearest]], [height], marker="v", markersize=5, color=colour,
                        markeredgecolor="black", markeredgewidth=0.5, transform=look)  # fmt: skip
 
 
-def _nearest(places: list[list[float] | None], there: Array) -> int | None:
+def _nearest(places: Sequence[tuple[float, float] | None], there: Array) -> int | None:
     """Return at which of some times a front axle is nearest to a place; None where it never is."""
     far = np.array([np.inf if p is None else np.hypot(*(np.asarray(p) - there)) for p in places])
     return int(far.argmin()) if np.isfinite(far).any() else None

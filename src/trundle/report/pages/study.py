@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -158,11 +159,12 @@ def _sag(floor: Structure) -> float | None:
 
 
 def _in_space(result: StudyResult) -> str:
-    """Return the page of the model in 3-D with its first modes; nothing for a large model."""
+    """Return the packed page of the model in 3-D with its first modes; nothing if it is large."""
     if result.modes is None or result.modes.motion is None:
         return ""
     study = result.study
-    return view_page(scene_of(study.floor, title=study.title, modes=result.modes, study=study))
+    page = view_page(scene_of(study.floor, title=study.title, modes=result.modes, study=study))
+    return base64.b64encode(gzip.compress(page.encode(), 9, mtime=0)).decode("ascii")
 
 
 def _logo(study: Study) -> str:

@@ -1,19 +1,16 @@
-"""The tables of a building in a study file: their keys, each checked by itself."""
+"""The tables of the parts of a building in a study file: their keys, each checked by itself."""
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field
-from pydantic_core import PydanticCustomError
+from pydantic import Field
 
-from trundle.study_file.building_makes import MaterialSection, PlateSection, ProfileSection
 from trundle.study_file.fields import (
     Angle,
     Flag,
     GridPlace,
     Length,
-    Line,
     LineDensity,
     Mass,
     Name,
@@ -25,21 +22,32 @@ from trundle.study_file.fields import (
     StiffnessPerMetre,
 )
 
-__all__ = ["BuildingSection", "LineSpringsSection", "RefineSection"]
+__all__ = [
+    "BeamMake",
+    "BeamSection",
+    "BraceSection",
+    "ColumnMake",
+    "ColumnSection",
+    "Dof",
+    "GridSection",
+    "JointSection",
+    "LineSpringsSection",
+    "MassSection",
+    "RampSection",
+    "RefineSection",
+    "SlabSection",
+    "SpringsSection",
+    "StoreySection",
+    "SupportSection",
+    "SymmetrySection",
+    "WallMake",
+    "WallSection",
+]
 
 Corners = Annotated[tuple[GridPlace, ...], Field(min_length=3)]
 Places = Annotated[tuple[GridPlace, ...], Field(min_length=1)]
 Path = Annotated[tuple[GridPlace, ...], Field(min_length=2)]
 Dof = Literal["ux", "uy", "uz", "rx", "ry", "rz"]
-
-
-def _metres(unit: Any) -> float:
-    """Return the size of a drawing's unit [m]."""
-    units = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "in": 0.0254, "ft": 0.3048}
-    if unit not in units:
-        rule = f"must be the unit of the drawing: one of {', '.join(units)}"
-        raise PydanticCustomError("rule", "{rule}", {"rule": rule})
-    return units[unit]
 
 
 class StoreySection(Section):
@@ -270,139 +278,3 @@ class RefineSection(Section):
     """Largest element edge there."""
     reach: PositiveLength = 1.0
     """How far from it."""
-
-
-class Layer(Section):
-    """A layer of a drawing."""
-
-    layer: Line
-    """Its name in the drawing."""
-
-    @property
-    def own(self) -> dict[str, Any]:
-        """What it says of each part that it shows."""
-        return {key: getattr(self, key) for key in type(self).model_fields if key != "layer"}
-
-
-class DrawnSlabs(Layer):
-    """Slabs that a layer outlines."""
-
-    plate: Name
-    """Of [building.plates]."""
-    panel: Flag = False
-    """Whether it takes the place of a slab that lies there."""
-
-    def table(self, **drawn: Any) -> SlabSection:
-        """Return the table of one of them."""
-        return SlabSection.model_construct(**self.own, **drawn)
-
-
-class DrawnOpenings(Layer):
-    """Openings that a layer outlines, in whichever slab they lie."""
-
-
-class DrawnColumns(Layer, ColumnMake):
-    """Columns that a layer shows by outlines, circles or points."""
-
-    def table(self, **drawn: Any) -> ColumnSection:
-        """Return the table of one of them."""
-        return ColumnSection.model_construct(**self.own, **drawn)
-
-
-class DrawnBeams(Layer, BeamMake):
-    """Beams along the lines of a layer."""
-
-    def table(self, **drawn: Any) -> BeamSection:
-        """Return the table of one of them."""
-        return BeamSection.model_construct(**self.own, **drawn)
-
-
-class DrawnWalls(Layer, WallMake):
-    """Walls along the lines of a layer."""
-
-    def table(self, *, along: tuple[tuple[float, float], ...], on: str) -> WallSection:
-        """Return the table of one of them; where it stands is said by its storeys."""
-        del on
-        return WallSection.model_construct(**self.own, along=along)
-
-
-class DrawingSection(Section):
-    """A DXF drawing of one storey, and what its layers are."""
-
-    file: Line
-    """The drawing (DXF), beside the study."""
-    on: Name
-    """Its storey."""
-    unit: Annotated[float | None, BeforeValidator(_metres)] = None
-    """Of the drawing, where it does not say it."""
-    origin: Place = (0.0, 0.0)
-    """Place of the drawing that is x = y = 0."""
-    slab: tuple[DrawnSlabs, ...] = ()
-    """Layers that outline slabs."""
-    opening: tuple[DrawnOpenings, ...] = ()
-    """Layers that outline openings."""
-    column: tuple[DrawnColumns, ...] = ()
-    """Layers that show columns."""
-    beam: tuple[DrawnBeams, ...] = ()
-    """Layers of the lines of beams."""
-    wall: tuple[DrawnWalls, ...] = ()
-    """Layers of the lines of walls."""
-
-
-class BuildingSection(Section):
-    """A building of storeys."""
-
-    kind: Literal["storeys"] = "storeys"
-    """A building of storeys."""
-    name: Line = "building"
-    """What it is called."""
-    mesh_size: PositiveLength
-    """Largest element edge."""
-    elements: Literal["quadrilaterals", "triangles"] = "quadrilaterals"
-    """What slabs are meshed with."""
-    size_at_routes: PositiveLength | None = None
-    """Largest element edge along routes."""
-    size_at_points: PositiveLength | None = None
-    """Largest element edge round points."""
-    size_at_supports: PositiveLength | None = None
-    """Largest element edge at supports, columns and walls."""
-    nodes_at_points: Flag = False
-    """Whether nodes lie at points."""
-    edges_along_routes: Flag = False
-    """Whether edges of elements follow routes."""
-    north: Angle | None = None
-    """Where north is on the plan, for pictures."""
-    materials: dict[Name, MaterialSection] = Field(default_factory=dict)
-    """Materials by name; steel is there."""
-    sections: dict[Name, ProfileSection] = Field(default_factory=dict)
-    """Cross-sections by name."""
-    plates: dict[Name, PlateSection] = Field(default_factory=dict)
-    """Plates by name."""
-    grid: GridSection = GridSection()
-    """Grid lines by name."""
-    storey: Annotated[tuple[StoreySection, ...], Field(min_length=1)]
-    """Its storeys, from below to above."""
-    slab: tuple[SlabSection, ...] = ()
-    """Areas of slab."""
-    beam: tuple[BeamSection, ...] = ()
-    """Beams along lines."""
-    column: tuple[ColumnSection, ...] = ()
-    """Columns from storey to storey."""
-    wall: tuple[WallSection, ...] = ()
-    """Walls from storey to storey."""
-    brace: tuple[BraceSection, ...] = ()
-    """Members between two places."""
-    ramp: tuple[RampSection, ...] = ()
-    """Slabs that rise from edge to edge."""
-    support: tuple[SupportSection, ...] = ()
-    """What holds floors."""
-    mass: tuple[MassSection, ...] = ()
-    """Masses at places and along lines."""
-    joint: tuple[JointSection, ...] = ()
-    """What connects edges across joints."""
-    symmetry: tuple[SymmetrySection, ...] = ()
-    """Vertical planes at which the model ends."""
-    refine: tuple[RefineSection, ...] = ()
-    """Where elements are smaller."""
-    drawing: tuple[DrawingSection, ...] = ()
-    """Drawings of storeys, and what their layers are."""

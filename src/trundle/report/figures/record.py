@@ -27,7 +27,14 @@ def drawings(result: RecordResult) -> Iterator[Drawing]:
     Drawing
         One after the other.
     """
-    survey, running = result.survey, result.survey.running
+    yield from _levels(result)
+    yield from _frequencies(result)
+    yield _history(result)
+
+
+def _levels(result: RecordResult) -> Iterator[Drawing]:
+    """Give band levels on the criteria, and how they run."""
+    running = result.survey.running
     yield Drawing(
         name="spectra",
         title="Velocity spectra on criteria",
@@ -54,7 +61,11 @@ def drawings(result: RecordResult) -> Iterator[Drawing]:
         ),
         draw=lambda: running_figure(result, _MOST_CHANNELS),
     )
-    spectrum = survey.spectrum
+
+
+def _frequencies(result: RecordResult) -> Iterator[Drawing]:
+    """Give the power spectral density, and how it goes over time."""
+    spectrum, gram = result.survey.spectrum, result.survey.spectrogram
     yield Drawing(
         name="psd",
         title="Power spectral density",
@@ -65,7 +76,6 @@ def drawings(result: RecordResult) -> Iterator[Drawing]:
         ),
         draw=lambda: psd_figure(result, _MOST_CHANNELS),
     )
-    gram = survey.spectrogram
     many = "" if gram.per_column == 1 else f", the largest of {gram.per_column} in each column"
     yield Drawing(
         name="spectrogram",
@@ -76,11 +86,14 @@ def drawings(result: RecordResult) -> Iterator[Drawing]:
         ),
         draw=lambda: spectrogram_figure(result, _MOST_CHANNELS),
     )
-    outline = survey.outline
-    n = outline.per_column
+
+
+def _history(result: RecordResult) -> Drawing:
+    """Return the motion in time."""
+    n = result.survey.outline.per_column
     rate = result.record.sampling_frequency
     hull = "" if n == 1 else f", smallest and largest value of every {n / rate:.3g} s"
-    yield Drawing(
+    return Drawing(
         name="history",
         title="Motion in time",
         caption=(

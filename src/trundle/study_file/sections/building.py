@@ -25,7 +25,8 @@ from trundle.study_file.building_models import (
     with_model,
 )
 from trundle.study_file.building_parts import Origins, parts_of
-from trundle.study_file.building_tables import BuildingSection, RefineSection
+from trundle.study_file.building_section import BuildingSection
+from trundle.study_file.building_tables import RefineSection
 from trundle.study_file.draft import Draft
 from trundle.study_file.kinds import SectionKind
 

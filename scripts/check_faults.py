@@ -192,7 +192,7 @@ def check_sound(copy: Copy, faults: tuple[Fault, ...]) -> None:
     """Stop unless every test passes while there is no fault."""
     start = time.monotonic()
     for tests in selections(faults):
-        done = copy.run(*PYTEST, *tests, limit=ALL_LIMIT)
+        done = copy.run(*PYTEST, "-n", str(os.cpu_count() or 1), *tests, limit=ALL_LIMIT)
         if done.returncode != PASSED:
             print(done.stdout, done.stderr, file=sys.stderr)
             print("the tests must pass on the unchanged code first", file=sys.stderr)

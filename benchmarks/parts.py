@@ -5,7 +5,8 @@ their columns: modes below 20 Hz, parts kept to twice that. The limit it is held
 project's own block Lanczos iteration on the whole. ``--units 2x5`` puts so many units side by side
 on every storey, as far as memory goes, and leaves the whole out. ``--runs 1000`` drives the paper's
 truck over so many roads along a driveway of the third storey, coupled, and reads tools on three.
-``--count`` proves how many modes there are, and finds none of them.
+``--count`` proves how many modes there are, and finds none of them. ``--answers 0.05`` finds what
+answers between the driveway and the tools within that error, in place of all modes.
 Parts are kept in the folder that ``TRUNDLE_CACHE`` names, and nowhere if it names none.
 """
 
@@ -26,8 +27,17 @@ from trundle.road import RoadClass
 from trundle.route import Route
 from trundle.run.parts import modes_by_parts, with_kept_parts
 from trundle.simulate import Coupled, Crossing, Modal, lay_out, prepare, runs_with_mean
+from trundle.simulate.laying_out import point_rows
+from trundle.simulate.sources.passage import as_sources
+from trundle.simulate.wheels.standing import route_dofs
 from trundle.structure import Floor, Frame, Spot, Surface, build_floor, reference_plan
-from trundle.structure.superelements import Cuts, PartedStructure, Parting
+from trundle.structure.superelements import (
+    Cuts,
+    PartedStructure,
+    Parting,
+    answering_by_parts,
+    questions_of,
+)
 from trundle.vehicle import library_vehicle
 
 HEIGHT, WIDTH, DEPTH = 8.5, 52.0, 83.5
@@ -93,18 +103,28 @@ def with_decks(floor: Floor, nz: int) -> Floor:
     return replace(floor, decks=decks)
 
 
+ROUTE = replace(Route.straight((0.0, 76.5), (WIDTH, 76.5), speed=15 / 3.6), on="storey 2")
+TRUCK = Crossing(library_vehicle("container_truck_40ft"), ROUTE, RoadClass("B"))
+TOOLS = {f"storey {k}": Spot(x=32.5, y=62.5, on=f"storey {k}") for k in (1, 2, 3)}
+DAMPING = ModalRatio(ratio=0.03)
+
+
+def answering(parted: PartedStructure, tolerance: float) -> Modes:
+    """Find what answers between the driveway and the tools, in place of all modes."""
+    dofs, read = route_dofs(parted, as_sources(TRUCK)), point_rows(parted, TOOLS)
+    questions = questions_of(parted, dofs, read)
+    return answering_by_parts(parted, questions, DAMPING.ratios, f_max=F_MAX, tolerance=tolerance)
+
+
 def crossing_levels(parted: PartedStructure, modes: Modes, runs: int) -> dict[str, object]:
     """Drive the paper's truck along one driveway, and read tools on three storeys."""
-    route = replace(Route.straight((0.0, 76.5), (WIDTH, 76.5), speed=15 / 3.6), on="storey 2")
-    truck = Crossing(library_vehicle("container_truck_40ft"), route, RoadClass("B"))
     method = Coupled(
         integration=Modal(f_max=F_MAX, dt=0.01, response_tolerance=0.005),
-        damping=ModalRatio(ratio=0.03),
+        damping=DAMPING,
     )
-    tools = {f"storey {k}": Spot(x=32.5, y=62.5, on=f"storey {k}") for k in (1, 2, 3)}
     start = time.process_time()
     prepared = prepare(parted, method.integration, method.damping, modes=modes)
-    layout = lay_out(prepared, truck, method=method, points=tools)
+    layout = lay_out(prepared, TRUCK, method=method, points=TOOLS)
     laid_out = time.process_time()
     found = []
     for first in range(0, runs, 100):
@@ -123,7 +143,7 @@ def crossing_levels(parted: PartedStructure, modes: Modes, runs: int) -> dict[st
                 float(f"{1e6 * row.max():.3g}"),
                 f"{spectra.mid_band[shown][int(row.argmax())]:.3g} Hz",
             ]
-            for name, row in zip(tools, mean, strict=True)
+            for name, row in zip(TOOLS, mean, strict=True)
         },
     }
 
@@ -142,6 +162,7 @@ def measured() -> None:
     parser.add_argument("--band", type=float, default=2.0, help="of parts, times 20 Hz")
     parser.add_argument("--mesh", type=float, default=1.0, help="largest element edge [m]")
     parser.add_argument("--runs", type=int, default=0, help="roads of a coupled crossing")
+    parser.add_argument("--answers", type=float, help="error within which what answers is found")
     parser.add_argument("--count", action="store_true", help="count modes, and find none of them")
     given = parser.parse_args()
     nx, ny = map(int, given.units.split("x"))
@@ -160,7 +181,11 @@ def measured() -> None:
     reduced_at = time.process_time()
     count = pencil.factorise((2 * np.pi * F_MAX) ** 2).n_negative
     counted_at = time.process_time()
-    modes = None if given.count else modes_by_parts(parted, F_MAX)
+    modes = None
+    if given.answers:
+        modes = answering(parted, given.answers)
+    elif not given.count:
+        modes = modes_by_parts(parted, F_MAX)
     end = time.process_time()
     found = {
         "degrees of freedom": floor.n_dofs,
@@ -175,7 +200,8 @@ def measured() -> None:
     }
     if modes is not None:
         found |= {"modes found": modes.n_modes, "CPU s of modes": round(end - counted_at, 1)}
-    if modes is not None and nx * ny == 1:
+        found |= {"answers": modes.answering} if modes.answering else {}
+    if modes is not None and not given.answers and nx * ny == 1:
         start = time.process_time()
         whole = floor.modes(F_MAX).omega
         spent = time.process_time() - start

@@ -1,5 +1,6 @@
 """Reduce vibrating things to matrices and step them through time."""
 
+from trundle.dynamics.answering import AnswerAll, AnsweringModes, answer_here, answering_modes
 from trundle.dynamics.combined_modes import ResponseBasis, response_basis
 from trundle.dynamics.damping import ByMaterial, Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import (
@@ -11,13 +12,20 @@ from trundle.dynamics.eigen import (
     natural_modes,
     together,
 )
+from trundle.dynamics.enquiry import Enquiry, Questions
 from trundle.dynamics.exact import ExactRecursion, ModalRecursion
 from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
 from trundle.dynamics.kept_parts import is_reduction_of, part_as_arrays, part_from_arrays
 from trundle.dynamics.lanczos import Interval
 from trundle.dynamics.modes import Basis, Modes
 from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
-from trundle.dynamics.pencil import Pencil, Product, SparsePencil, shift_near
+from trundle.dynamics.pencil import (
+    DampedPencil,
+    Pencil,
+    Product,
+    SparsePencil,
+    shift_near,
+)
 from trundle.dynamics.same_bits import repeatable
 from trundle.dynamics.sampling import (
     REACH,
@@ -28,7 +36,14 @@ from trundle.dynamics.sampling import (
     responses_of,
     restoring_filter,
 )
-from trundle.dynamics.sparse_solver import Factor, HalfSolve, available_backends, factorise
+from trundle.dynamics.sparse_solver import (
+    Factor,
+    HalfSolve,
+    Solver,
+    available_backends,
+    factorise,
+    factorise_damped,
+)
 from trundle.dynamics.stepping import Motion, Propagator, State
 from trundle.dynamics.superelement import RestingPart, Superelement, reduce_part
 from trundle.dynamics.system import LinearSystem, block_diagonal
@@ -36,9 +51,13 @@ from trundle.dynamics.system import LinearSystem, block_diagonal
 __all__ = [
     "REACH",
     "TOP",
+    "AnswerAll",
+    "AnsweringModes",
     "Basis",
     "ByMaterial",
+    "DampedPencil",
     "Damping",
+    "Enquiry",
     "ExactRecursion",
     "Factor",
     "HalfSolve",
@@ -54,12 +73,16 @@ __all__ = [
     "Pencil",
     "Product",
     "Propagator",
+    "Questions",
     "Rayleigh",
     "ResponseBasis",
     "RestingPart",
+    "Solver",
     "SparsePencil",
     "State",
     "Superelement",
+    "answer_here",
+    "answering_modes",
     "are_modes_of",
     "available_backends",
     "block_diagonal",
@@ -67,6 +90,7 @@ __all__ = [
     "dense_is_better",
     "differentiator",
     "factorise",
+    "factorise_damped",
     "following_filters",
     "image_filters",
     "intervals_below",

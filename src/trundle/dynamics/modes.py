@@ -62,6 +62,9 @@ class Modes:
         Every mode below this frequency is here [Hz].
     basis : Basis, optional
         What the shapes are written by, where they are not by the dofs themselves.
+    answering : str
+        Where these are combinations that answer in place of all modes below `f_max`
+        (`dynamics.answering`): what a result must say of them. None may be left out then.
     """
 
     omega: Float[Array, " modes"]
@@ -69,6 +72,7 @@ class Modes:
     residuals: Float[Array, " modes"]
     f_max: float
     basis: Basis | None = None
+    answering: str = ""
 
     @property
     def frequencies(self) -> Float[Array, " modes"]:
@@ -108,7 +112,12 @@ class Modes:
         return self.shapes.T @ (load if self.basis is None else self.basis.forces(load))
 
     def below(self, f: float) -> Modes:
-        """Return the modes below a frequency [Hz], at most `f_max`."""
+        """Return the modes below a frequency [Hz], at most `f_max`.
+
+        Combinations that answer are all given back: they answer below it too.
+        """
+        if self.answering:
+            return replace(self, f_max=min(f, self.f_max))
         fewer = self.first(int(np.searchsorted(self.frequencies, f)))
         return replace(fewer, f_max=min(f, self.f_max))
 

@@ -9,10 +9,18 @@ import numpy as np
 from scipy import sparse
 
 from trundle._typing import Array, Matrix, SparseMatrix
-from trundle.dynamics.sparse_solver import Factor, factorise
+from trundle.dynamics.sparse_solver import Factor, Solver, factorise, factorise_damped
 from trundle.errors import ConvergenceError, UnrestrainedModeError
 
-__all__ = ["Multiplies", "Pencil", "Product", "Shift", "SparsePencil", "shift_near"]
+__all__ = [
+    "DampedPencil",
+    "Multiplies",
+    "Pencil",
+    "Product",
+    "Shift",
+    "SparsePencil",
+    "shift_near",
+]
 
 _NUDGES = 6  # shifts tried beside each other if one meets an eigenvalue
 
@@ -54,6 +62,15 @@ class Pencil(Protocol):
         ...
 
 
+@runtime_checkable
+class DampedPencil(Pencil, Protocol):
+    """Stiffness and mass that can be factorised off the real axis too."""
+
+    def factorise_damped(self, shift: complex) -> Solver:
+        """Factorise ``K - shift M`` at a shift off the real axis."""
+        ...
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SparsePencil:
     """Hold two sparse matrices.
@@ -74,6 +91,11 @@ class SparsePencil:
         """Factorise ``K - shift M``."""
         matrix = sparse.csc_array(self.stiffness - shift * self.mass)
         return factorise(matrix, backend=self.backend)
+
+    def factorise_damped(self, shift: complex) -> Solver:
+        """Factorise ``K - shift M`` at a shift off the real axis."""
+        matrix = sparse.csc_array(self.stiffness - shift * self.mass)
+        return factorise_damped(matrix, backend=self.backend)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

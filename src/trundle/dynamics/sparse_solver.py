@@ -21,7 +21,15 @@ from scipy.sparse import linalg as sparse_linalg
 from trundle._typing import Array, SparseMatrix
 from trundle.errors import InputError, UnrestrainedModeError
 
-__all__ = ["BACKENDS", "Factor", "HalfSolve", "available_backends", "factorise"]
+__all__ = [
+    "BACKENDS",
+    "Factor",
+    "HalfSolve",
+    "Solver",
+    "available_backends",
+    "factorise",
+    "factorise_damped",
+]
 
 HalfSolve: TypeAlias = Callable[[Array], Array]
 """One half of a solution with a triangular factor, in the solver's own order of rows."""
@@ -31,16 +39,21 @@ BACKENDS = ("pardiso", "superlu")
 
 
 @runtime_checkable
-class Factor(Protocol):
-    """What a factorised symmetric matrix A can do."""
+class Solver(Protocol):
+    """What a factorised matrix A can do."""
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """Return ``A^-1 b`` for b of shape (n,) or (n, k)."""
+        ...
+
+
+@runtime_checkable
+class Factor(Solver, Protocol):
+    """What a factorised real symmetric matrix A can do."""
 
     @property
     def n_negative(self) -> int:
         """Number of negative eigenvalues of A (Sylvester's law of inertia)."""
-        ...
-
-    def solve(self, right_hand_side: Array) -> Array:
-        """Return ``A^-1 b`` for b of shape (n,) or (n, k)."""
         ...
 
     def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
@@ -82,13 +95,40 @@ def factorise(matrix: SparseMatrix, *, backend: str | None = None) -> Factor:
     UnrestrainedModeError
         The matrix is singular: the structure is a mechanism.
     """
+    if _known(backend) == "pardiso":
+        return _PardisoFactor(matrix)
+    return _SuperLUFactor(matrix)
+
+
+def factorise_damped(matrix: SparseMatrix, *, backend: str | None = None) -> Solver:
+    """Factorise a complex symmetric matrix, such as ``K - z M`` of a damped structure.
+
+    Parameters
+    ----------
+    matrix : sparse array of complex, shape (n, n)
+        Equal to its transpose, not to its conjugate; both triangles stored.
+    backend : {"pardiso", "superlu"}, optional
+        Solver; the best one available unless named.
+
+    Raises
+    ------
+    InputError
+        Unknown or missing backend.
+    UnrestrainedModeError
+        The matrix is singular.
+    """
+    if _known(backend) == "pardiso":
+        return _PardisoFactor(matrix)
+    return _SuperLUFactor(matrix)
+
+
+def _known(backend: str | None) -> str:
+    """Return the backend asked for, the best one available unless named."""
     name = backend or available_backends()[0]
     if name not in available_backends():
         known = ", ".join(available_backends())
         raise InputError(f"sparse backend must be one of {known}; got {name!r}")
-    if name == "pardiso":
-        return _PardisoFactor(matrix)
-    return _SuperLUFactor(matrix)
+    return name
 
 
 class _SuperLUFactor:
@@ -108,8 +148,12 @@ class _SuperLUFactor:
         pivots = self._lu.U.diagonal()
         if not _well_conditioned(pivots):
             raise UnrestrainedModeError(_SINGULAR)
-        self.n_negative = int(np.count_nonzero(pivots < 0.0))
+        self._dtype = pivots.dtype
         self._refined: SparseMatrix | None = None
+        self.n_negative = 0
+        if np.iscomplexobj(pivots):
+            return  # damping keeps pivots from growing
+        self.n_negative = int(np.count_nonzero(pivots < 0.0))
         if self.n_negative and self._error(matrix) > _PRECISE:
             self._refined = matrix
 
@@ -117,7 +161,7 @@ class _SuperLUFactor:
         return None
 
     def solve(self, right_hand_side: Array) -> Array:
-        b = np.ascontiguousarray(right_hand_side)
+        b = np.ascontiguousarray(right_hand_side, dtype=self._dtype)
         x = self._lu.solve(b)
         return x if self._refined is None else x + self._lu.solve(b - self._refined @ x)
 
@@ -128,7 +172,7 @@ class _SuperLUFactor:
 
 
 class _PardisoFactor:
-    """MKL PARDISO, Cholesky where the matrix is definite, LDL^T where it is not."""
+    """MKL PARDISO, Cholesky where a real matrix is definite, LDL^T where it is not."""
 
     def __init__(self, matrix: SparseMatrix) -> None:
         wrapper = importlib.import_module("pypardiso.pardiso_wrapper")
@@ -137,11 +181,12 @@ class _PardisoFactor:
         self._upper = upper
         self._solver: Any = None
         self.n_negative = 0
-        if np.all(upper.diagonal() > 0.0) and self._try_type(wrapper, _DEFINITE):
+        damped = np.iscomplexobj(upper)
+        if not damped and np.all(upper.diagonal() > 0.0) and self._try_type(wrapper, _DEFINITE):
             return
-        if not self._try_type(wrapper, _INDEFINITE):
+        if not self._try_type(wrapper, _DAMPED if damped else _INDEFINITE):
             raise UnrestrainedModeError(_SINGULAR)
-        self.n_negative = int(self._solver.iparm[22])
+        self.n_negative = 0 if damped else int(self._solver.iparm[22])
         if int(self._solver.iparm[13]) > 0:  # perturbed pivots: singular to round-off
             raise UnrestrainedModeError(_SINGULAR)
 
@@ -153,7 +198,8 @@ class _PardisoFactor:
         weakref.finalize(self, solver.free_memory, everything=True)
         solver.set_phase(12)
         try:
-            solver._call_pardiso(self._upper, np.zeros((self._upper.shape[0], 1)))
+            nothing = np.zeros((self._upper.shape[0], 1), dtype=self._upper.dtype)
+            solver._call_pardiso(self._upper, nothing)
         except wrapper.PyPardisoError:
             return False
         # The factorisation call resets this entry, so refinement is switched off after it.
@@ -163,7 +209,8 @@ class _PardisoFactor:
         return True
 
     def solve(self, right_hand_side: Array) -> Array:
-        return self._solver._call_pardiso(self._upper, np.asfortranarray(right_hand_side))
+        b = np.asfortranarray(right_hand_side, dtype=self._upper.dtype)
+        return self._solver._call_pardiso(self._upper, b)
 
     def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
         if self._solver.mtype != _DEFINITE:
@@ -181,6 +228,7 @@ class _PardisoFactor:
 _PRECISE = 2e-11  # residual of a solution above which every solution is refined once
 _BOTH, _FORWARD, _BACKWARD = 33, 331, 333  # PARDISO's phases of a solution
 _DEFINITE, _INDEFINITE = 2, -2  # PARDISO's matrix types for real symmetric matrices
+_DAMPED = 6  # and for complex symmetric ones
 
 
 def _well_conditioned(pivots: Array) -> bool:

@@ -7,8 +7,7 @@ kept (`run.kept_parts`): what dies, or is killed, loses the parts in work.
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -26,12 +25,11 @@ from trundle.dynamics import (
     repeatable,
     together,
 )
-from trundle.run.executor import Executor, Work
+from trundle.run.carried import carried_out
+from trundle.run.executor import Executor
 from trundle.run.jobs import Job
 from trundle.run.kept_parts import keep_part, kept_part
-from trundle.run.threads import Threads
-from trundle.simulate.laying_out import point_rows, spot_rows
-from trundle.simulate.wheels.standing import route_dofs
+from trundle.run.seen import map_rows, seen_by_jobs
 from trundle.structure import Structure
 from trundle.structure.superelements import PartedStructure, Sorted, reduced_here
 
@@ -121,12 +119,8 @@ def near_to_jobs(structure: Structure, jobs: Sequence[Job]) -> Structure:
         return structure
     if structure.nearness is not None:
         return structure  # what it is near to is known
-    sources = {source.name: source for job in jobs for source in job.sources}
-    found = [route_dofs(structure, tuple(sources.values()))]
-    for job in jobs:
-        found.append(np.unique(point_rows(structure, job.points).indices))
-        if job.map is not None:
-            found += [np.unique(spot_rows(structure, spots).indices) for spots in job.map.places]
+    dofs, read = seen_by_jobs(structure, jobs)
+    found = [dofs, read.indices, map_rows(structure, jobs).indices]
     return structure.near_to(np.unique(np.concatenate(found)))
 
 
@@ -163,7 +157,7 @@ def modes_by_parts(
         IntervalTask(name=f"modes {part.first + 1} to {part.end} of {count}", interval=part)
         for part in parts
     ]
-    found = _carried_out(
+    found = carried_out(
         [(task, pencil) for task in tasks],
         executor,
         lambda share: told(_COUNTED + (1.0 - _COUNTED) * share),
@@ -193,49 +187,10 @@ def _reduced(
     ]
     label = f"{len(missing)} of {len(parts)} distinct parts"
     by_name = dict(zip(names, parts, strict=True))
-    found = _carried_out(
+    found = carried_out(
         missing,
         executor,
         lambda share: tell(label, share),
         lambda name, reduced: keep_part(by_name[name], reduced),
     )
     return tuple(kept[name] or found[name] for name in names)
-
-
-def _carried_out(
-    tasks: Sequence[tuple[Work, Any]],
-    executor: Executor | None,
-    progress: Progress,
-    landed: Callable[[str, Any], None] | None = None,
-) -> dict[str, Any]:
-    """Compute tasks, each with what it needs; tell of each that has landed."""
-    if not tasks:
-        return {}
-    if executor is None:
-        with Threads() as own:
-            return _carried_out(tasks, own, progress, landed)
-    found: dict[str, Any] = {}
-    shares = dict.fromkeys((task.name for task, _ in tasks), 0.0)
-    lock = threading.Lock()
-
-    def teller(name: str) -> Progress:
-        def tell(share: float) -> None:
-            with lock:
-                shares[name] = share
-                progress(sum(shares.values()) / len(shares))
-
-        return tell
-
-    def take(*, wait: bool) -> None:
-        for name, left in executor.finished(wait=wait):
-            found[name] = left
-            teller(name)(1.0)
-            if landed is not None:
-                landed(name, left)
-
-    with repeatable():
-        for task, shared in tasks:
-            executor.submit(task, shared, teller(task.name))
-            take(wait=False)
-        take(wait=True)
-    return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import replace
 
@@ -18,6 +18,7 @@ from trundle.results.modes import first_modes
 from trundle.results.parts import DayPart, MapPart, cell_of
 from trundle.results.provenance import provenance_of
 from trundle.results.study_result import StudyResult
+from trundle.run.answering import answers_to_jobs, asks_for_answers
 from trundle.run.checkpoint import InMemory, PieceStore
 from trundle.run.estimate import seconds_of_modes, size_of
 from trundle.run.executor import Batch, Executor, carry_out
@@ -86,7 +87,7 @@ def _computed(
     share = of_modes / (of_modes + sum(costs.values()))
     with nullcontext(executor) if executor is not None else Threads() as who:
         floor = near_to_jobs(with_kept_parts(study.floor, who), jobs)
-        modes = _all_modes(study, floor, who, lambda what, done: tell(what, share * done))
+        modes = _all_modes(study, floor, jobs, who, lambda what, done: tell(what, share * done))
         floors = Floors(floor, modes, jobs)
         batches = [
             Batch(
@@ -146,7 +147,7 @@ def _result(
         verdicts=verdicts,
         maps=_in_order(study, maps),
         days={key: days[key] for key in _day_keys(study) if key in days},
-        modes=None if modes is None else first_modes(modes, study.floor),
+        modes=None if modes is None or modes.answering else first_modes(modes, study.floor),
         mesh=None,
         provenance=provenance_of(study),
     )
@@ -177,13 +178,25 @@ def _keys(study: Study) -> Iterator[CellKey]:
                 yield CellKey(case.name, road, method.name)
 
 
-def _all_modes(study: Study, floor: Structure, who: Executor, tell: Tell) -> Modes | None:
-    """Find the modes once, as far as the most demanding method needs them."""
+def _all_modes(
+    study: Study, floor: Structure, jobs: Sequence[Job], who: Executor, tell: Tell
+) -> Modes | None:
+    """Find the modes once, as far as the most demanding method needs them, or what answers."""
     f_max = max(
         (method.interaction.integration.f_max or 0.0 for method in study.methods), default=0.0
     )
     if f_max == 0.0:
         return None
+    if asks_for_answers(floor):
+        label = f"answers of the building below {f_max:g} Hz"
+        tell(label, 0.0)
+        return answers_to_jobs(
+            floor,
+            [job for job in jobs if job.modal],
+            f_max=f_max,
+            executor=who,
+            progress=lambda share: tell(label, share),
+        )
     label = f"modes of the floor below {f_max:g} Hz"
     tell(label, 0.0)
     with repeatable():

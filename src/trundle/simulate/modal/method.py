@@ -206,6 +206,8 @@ class FloorInModes:
                     f"bands that reach above {self.integration.f_resolved:.3g} Hz are not assessed",
                 ),
             )
+        if self.modes.answering:
+            found += (FitnessWarning(subject="answers", message=self.modes.answering),)
         if self.modes.basis is not None:
             found += (FitnessWarning(subject="parts", message=self.modes.basis.told),)
         if isinstance(self.damping, ByMaterial):

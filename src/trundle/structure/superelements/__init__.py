@@ -1,5 +1,6 @@
 """Find the modes of large structures by their parts."""
 
+from trundle.structure.superelements.answers import answering_by_parts, questions_of
 from trundle.structure.superelements.assembly import Joined
 from trundle.structure.superelements.cuts import Cuts
 from trundle.structure.superelements.evidence import PartEvidence
@@ -16,5 +17,7 @@ __all__ = [
     "Parting",
     "ReducedPencil",
     "Sorted",
+    "answering_by_parts",
+    "questions_of",
     "reduced_here",
 ]

@@ -115,6 +115,24 @@ class Joined:
             out[np.ix_(rows, seams)] += boundary @ self.bases[number].shapes
         return out
 
+    def by_coordinates(self, reader: SparseMatrix) -> SparseMatrix:
+        """Return how rows of weights (n_rows, n_dofs) see each coordinate: ``reader T``."""
+        pencil, found = self.pencil, []
+        shape = (reader.shape[0], pencil.n_coordinates)
+        for number, columns in enumerate(_once(sparse.csc_array(reader), self)):
+            if not columns.nnz:
+                continue
+            own, at = self.placed[number], pencil.pieces[number]
+            signed = sparse.csr_array(columns @ sparse.diags_array(own.sign))
+            rows = np.flatnonzero(np.diff(signed.indptr))
+            modes, boundary = self.resting[own.kind].seen(signed[rows])
+            n = pencil.n_own(number)
+            mine = np.hstack([modes[:, :n], boundary @ self.bases[number].shapes])
+            which = np.concatenate([at.first + np.arange(n), pencil.n_modes + at.seams])
+            places = (np.repeat(rows, len(which)), np.tile(which, len(rows)))
+            found.append(sparse.csr_array((mine.ravel(), places), shape=shape))
+        return sum(found, sparse.csr_array(shape))
+
     def expanded(self, q: Float[Array, "coordinates columns"]) -> Float[Array, "dofs columns"]:
         """Return the motion of all dofs."""
         out = np.empty((self.n_dofs, q.shape[1]))

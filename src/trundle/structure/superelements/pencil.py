@@ -22,7 +22,7 @@ from jaxtyping import Float, Int
 from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import Factor, HalfSolve, factorise
+from trundle.dynamics import Factor, HalfSolve, Solver, factorise, factorise_damped
 from trundle.errors import UnrestrainedModeError
 
 __all__ = ["PieceCoordinates", "ReducedPencil", "ReducedPiece"]
@@ -179,7 +179,7 @@ class ReducedPencil:
     def _at_seams(self, blocks: Sequence[Array]) -> SparseMatrix:
         """Add up a dense block a distinct piece over all pieces."""
         pattern = self._pattern
-        data = np.zeros(pattern.nnz)
+        data = np.zeros(pattern.nnz, dtype=blocks[0].dtype)
         for one, places in zip(self.pieces, self._places, strict=True):
             data[places] += blocks[one.kind]
         return sparse.csc_array((data, pattern.indices, pattern.indptr), shape=pattern.shape)
@@ -206,14 +206,54 @@ class ReducedPencil:
             full = kind.stiffness - shift * kind.mass
             full -= kind.coupling.T @ (weight[:, None] * kind.coupling)
             blocks.append(full)
-        return _ShiftedFactor(pencil=self, shift=shift, seams=factorise(self._at_seams(blocks)))
+        seams = factorise(self._at_seams(blocks))
+        return _ShiftedFactor(pencil=self, shift=shift, seams=seams)
+
+    def factorise_damped(self, shift: complex) -> Solver:
+        """Factorise ``K - shift M`` at a shift off the real axis."""
+        blocks = []
+        for kind in self.kinds:
+            share = shift**2 / (kind.omega**2 - shift)
+            # real products, half the work of complex ones
+            there = kind.coupling.T @ (share.real[:, None] * kind.coupling)
+            across = kind.coupling.T @ (share.imag[:, None] * kind.coupling)
+            blocks.append(kind.stiffness - shift * kind.mass - (there + 1j * across))
+        seams = factorise_damped(self._at_seams(blocks))
+        return _Shifted(pencil=self, shift=shift, seams=seams)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _ShiftedFactor:
-    """A factorised ``K - shift M``."""
+class _Shifted:
+    """A factorised ``K - shift M``, of any shift."""
 
     pencil: ReducedPencil
+    shift: complex
+    seams: Solver
+
+    def solve(self, right_hand_side: Array) -> Array:
+        """Return ``(K - shift M)^-1 b``."""
+        pencil, n = self.pencil, self.pencil.n_modes
+        b = right_hand_side if right_hand_side.ndim == 2 else right_hand_side[:, None]
+        gap = (pencil.omega**2 - self.shift)[:, None]
+        out = np.empty_like(b, dtype=gap.dtype)
+        own, seams = b[:n] / gap, b[n:].astype(gap.dtype)
+        for one in pencil.pieces:
+            coupling = pencil.kinds[one.kind].coupling
+            mine = own[one.first : one.first + len(coupling)]
+            seams[one.seams] += self.shift * _times(coupling.T, mine)
+        out[n:] = self.seams.solve(seams)
+        for one in pencil.pieces:
+            coupling = pencil.kinds[one.kind].coupling
+            mine = slice(one.first, one.first + len(coupling))
+            moved = self.shift * _times(coupling, out[n + one.seams])
+            out[mine] = own[mine] + moved / gap[mine]
+        return out.reshape(right_hand_side.shape)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _ShiftedFactor(_Shifted):
+    """A factorised ``K - shift M`` at a real shift, which counts what lies below."""
+
     shift: float
     seams: Factor
 
@@ -223,28 +263,16 @@ class _ShiftedFactor:
         own = np.count_nonzero(self.pencil.omega**2 < self.shift)
         return int(own) + self.seams.n_negative
 
-    def solve(self, right_hand_side: Array) -> Array:
-        """Return ``(K - shift M)^-1 b``."""
-        pencil, n = self.pencil, self.pencil.n_modes
-        b = right_hand_side if right_hand_side.ndim == 2 else right_hand_side[:, None]
-        gap = (pencil.omega**2 - self.shift)[:, None]
-        out = np.empty_like(b, dtype=float)
-        own, seams = b[:n] / gap, b[n:].copy()
-        for one in pencil.pieces:
-            coupling = pencil.kinds[one.kind].coupling
-            mine = own[one.first : one.first + len(coupling)]
-            seams[one.seams] += self.shift * (coupling.T @ mine)
-        out[n:] = self.seams.solve(seams)
-        for one in pencil.pieces:
-            coupling = pencil.kinds[one.kind].coupling
-            mine = slice(one.first, one.first + len(coupling))
-            moved = self.shift * (coupling @ out[n + one.seams])
-            out[mine] = own[mine] + moved / gap[mine]
-        return out.reshape(right_hand_side.shape)
-
     def halves(self) -> tuple[HalfSolve, HalfSolve] | None:
         """Return nothing: there is no factor of the whole."""
         return None
+
+
+def _times(matrix: Array, block: Array) -> Array:
+    """Return a real matrix times a block, real or complex, by a real product."""
+    if np.isrealobj(block):
+        return matrix @ block
+    return (matrix @ np.ascontiguousarray(block).view(float)).view(complex)
 
 
 _CLOSE = 1e-9  # relative distance of a shift from a piece's own eigenvalue that is too near

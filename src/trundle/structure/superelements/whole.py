@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from jaxtyping import Float, Int
 
-from trundle._checks import positive, set_frozen
+from trundle._checks import positive, set_frozen, within
 from trundle._progress import Progress, Tell, silent
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import Factor, Modes, Superelement, modes_by_shifts
@@ -57,11 +57,15 @@ class Parting:
     near : float, optional
         Parts farther than this from routes and points are kept to less [m], the farther the less
         (`Nearness`).
+    response_tolerance : float
+        Find combinations that answer between routes, points and maps within this error in place of
+        all modes (`dynamics.answering`); 0 for all modes.
 
     Raises
     ------
     InputError
-        Neither planes nor a size, or both; seams that are kept to less than parts.
+        Neither planes nor a size, or both; seams that are kept to less than parts; a tolerance
+        above a tenth.
     """
 
     cuts: Cuts = field(default_factory=Cuts)
@@ -69,9 +73,11 @@ class Parting:
     f_parts: float
     f_seams: float
     near: float | None = None
+    response_tolerance: float = 0.0
 
     def __post_init__(self) -> None:
         """Check frequencies, and that something is cut."""
+        within("response_tolerance", self.response_tolerance, 0.0, 0.1)
         set_frozen(self, f_parts=positive("f_parts", self.f_parts))
         set_frozen(self, f_seams=positive("f_seams", self.f_seams))
         if self.f_seams < self.f_parts:

@@ -15,7 +15,15 @@ from trundle.errors import Problem
 from trundle.structure.floor import Floor
 from trundle.structure.superelements import Cuts, Parting
 from trundle.study_file.draft import Draft
-from trundle.study_file.fields import Flag, Length, Number, PositiveLength, Section, Whole
+from trundle.study_file.fields import (
+    Flag,
+    Length,
+    Number,
+    PositiveLength,
+    Ratio,
+    Section,
+    Whole,
+)
 from trundle.study_file.kinds import SectionKind
 
 __all__ = ["PARTS", "build", "fields"]
@@ -42,6 +50,8 @@ class PartsSection(Section):
     """Own modes of long seams are kept to so many times it."""
     near: PositiveLength | None = None
     """Parts farther than this from routes, points and maps are kept to less."""
+    response_tolerance: Annotated[Ratio, Field(le=0.1)] | None = None
+    """Find what answers between routes, points and maps within this error, not all modes."""
 
 
 PARTS = SectionKind(name="parts", schema=PartsSection, form="table")
@@ -64,6 +74,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         f_parts=section.band * highest,
         f_seams=max(section.seam_band, section.band) * highest,
         near=section.near,
+        response_tolerance=section.response_tolerance or 0.0,
     )
     model = draft.model
     if isinstance(model, Floor):

@@ -1,0 +1,292 @@
+"""Find combinations of motions by which a structure answers, without finding its modes.
+
+A route and some points tell few of the thousands of modes of a large building apart
+(`dynamics.combined_modes`). Their answers at some frequencies,
+
+    X(z) = (K - z M)^-1 B,      z = omega^2 / (1 + 2 i zeta),
+
+B what pushes and what is read, span nearly all answers between them, at every frequency: transfer
+functions of the projected matrices meet the true ones at each such z, twice where both ends of a
+transfer are in B (rational interpolation by projection; Grimme 1997). The projected matrices are
+diagonalised, so that whatever steps modes steps these.
+
+Where more frequencies are needed is seen from the answers themselves. Each new one is first told by
+what is there already: as far as it is off, so is whatever lies between. Where it is more than
+is allowed the gaps beside it are halved, and so on. What is told of the error comes from the last
+frequencies at which somebody looked, before they were taken in.
+
+References
+----------
+E. J. Grimme, Krylov projection methods for model reduction, University of Illinois (1997);
+A. C. Antoulas, C. A. Beattie and S. Gugercin, Interpolatory Methods for Model Reduction (2020).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+from jaxtyping import Float
+from scipy import linalg
+
+from trundle._progress import Progress
+from trundle._typing import Array
+from trundle.dynamics.enquiry import Enquiry, Questions
+from trundle.dynamics.krylov import BLOCK, Krylov
+from trundle.dynamics.modes import Modes
+from trundle.dynamics.pencil import DampedPencil, Product
+from trundle.dynamics.sparse_solver import Factor
+from trundle.errors import ConvergenceError
+
+__all__ = ["AnswerAll", "AnsweringModes", "answer_here", "answering_modes"]
+
+AnswerAll: TypeAlias = Callable[[Enquiry, Sequence[complex]], Iterator[Array]]
+"""Gives the answers of an enquiry at some shifts, in their order."""
+
+_COARSE = 8.0  # first spacing of frequencies, against the damping ratio: four resonances wide
+_FINEST = 0.5  # spacing at which the search is given up
+_LEAST_RATIO = 0.002  # of the ratio, for the spacing
+_SHARE = 0.05  # of the tolerance, below which a new direction is left out
+_FLOOR = 0.01  # of the loudest answer: what is 40 dB below it need not be known as well
+_STEPS = 6  # of the iteration that finds where the spectrum begins
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AnsweringModes:
+    """Hold combinations by which a structure answers, as modes of a smaller system.
+
+    Attributes
+    ----------
+    modes : Modes
+        The combinations: M-orthonormal, and K-orthogonal to each other.
+    error : float
+        Largest error of a velocity, as it was before the frequency was taken in at which it was
+        within the tolerance,
+        between the routes and any reading, of the routes' own motion and of maps: RMS over the
+        route or the map of the difference, over that of the answer, or over a hundredth of the
+        answer where it is loudest.
+    n_frequencies : int
+        At how many frequencies the structure was solved.
+    n_below : int
+        How many modes there are below `modes.f_max`, by inertia.
+    """
+
+    modes: Modes
+    error: float
+    n_frequencies: int
+    n_below: int
+
+
+def answer_here(enquiry: Enquiry, shifts: Sequence[complex]) -> Iterator[Array]:
+    """Give the answers at some shifts, one after the other."""
+    return map(enquiry.at, shifts)
+
+
+def answering_modes(
+    pencil: DampedPencil,
+    questions: Questions,
+    ratios: Callable[[Float[Array, " lines"]], Float[Array, " lines"]],
+    *,
+    f_max: float,
+    tolerance: float,
+    answer_all: AnswerAll = answer_here,
+    progress: Progress | None = None,
+) -> AnsweringModes:
+    """Return combinations that answer as the whole structure does, within a tolerance.
+
+    Parameters
+    ----------
+    pencil : DampedPencil
+        Stiffness and mass, positive definite.
+    questions : Questions
+        Where the structure is pushed and looked at.
+    ratios : callable
+        Gives the damping ratio at circular frequencies [rad/s]: the smallest that any mode there
+        may have.
+    f_max : float
+        Highest frequency at which it answers [Hz].
+    tolerance : float
+        Error that is allowed at any frequency, see `AnsweringModes`.
+    answer_all : callable
+        Who solves at the frequencies.
+    progress : callable, optional
+        Told about how much of the work is done, 0 to 1.
+
+    Raises
+    ------
+    ConvergenceError
+        Frequencies come closer to each other than a resonance is wide, and it is not within the
+        tolerance yet.
+    """
+    limit = (2.0 * np.pi * f_max) ** 2
+    n_below = pencil.factorise(limit).n_negative
+    rest = pencil.factorise(0.0)
+    search = _Search(ratios=ratios, low=0.5 * _first_omega(pencil, rest), high=np.sqrt(limit))
+    enquiry = Enquiry.of(
+        pencil, questions, rest, highest=search.shift(search.high), tolerance=tolerance
+    )
+    span, told = _Span(n_coordinates=pencil.mass.shape[0]), progress or _nobody
+    lines, known, error = search.first(), np.zeros(0), 0.0
+    loudest = np.zeros((2, enquiry.probed.shape[1]))
+    while len(lines):
+        basis = span.diagonal(pencil) if len(known) else None
+        off, sizes = (np.zeros((len(lines), *loudest.shape)) for _ in range(2))
+        shifts = [search.shift(omega) for omega in lines]
+        for i, found in enumerate(answer_all(enquiry, shifts)):
+            off[i], sizes[i] = lines[i] * _difference(enquiry, basis, shifts[i], found)
+            span.take(enquiry, found, _SHARE * tolerance)
+            told(1.0 - 0.5 ** (len(known) / 16.0) * (1.0 - 0.5 * (i + 1) / len(lines)))
+        loudest = np.maximum(loudest, sizes.max(axis=0))
+        errors = _largest(off, np.maximum(sizes, _FLOOR * loudest))
+        known = np.sort(np.concatenate([known, lines]))
+        passed = errors <= tolerance
+        error = max(error, float(errors[passed].max(initial=0.0)))
+        lines = search.next(known, lines if basis is None else lines[~passed])
+    omega, shapes = span.diagonal(pencil)
+    modes = Modes(omega=omega, shapes=shapes, residuals=np.full(len(omega), error), f_max=f_max)
+    return AnsweringModes(
+        modes=modes,
+        error=error,
+        n_frequencies=len(known),
+        n_below=n_below,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Search:
+    """Say at which frequencies to look."""
+
+    ratios: Callable[[Array], Array]
+    low: float
+    high: float
+
+    def shift(self, omega: float) -> complex:
+        """Return z of a circular frequency."""
+        return complex(omega**2 / (1.0 + 2j * self._ratio(np.array([omega]))[0]))
+
+    def first(self) -> Array:
+        """Return the first frequencies, rising by a like share."""
+        step = _COARSE * float(self._ratio(np.geomspace(self.low, self.high, 50)).min())
+        count = max(3, int(np.ceil(np.log(self.high / self.low) / step)) + 1)
+        return np.geomspace(self.low, self.high, count)
+
+    def next(self, known: Array, failed: Array) -> Array:
+        """Return the middles of the gaps beside frequencies that failed."""
+        index = np.searchsorted(known, failed)
+        gaps = np.unique(np.concatenate([index - 1, index]))
+        gaps = gaps[(gaps >= 0) & (gaps < len(known) - 1)]
+        left, right = known[gaps], known[gaps + 1]
+        narrow = np.log(right / left) < _FINEST * self._ratio(left)
+        if len(gaps) and narrow.any():
+            at = float(left[narrow][0]) / (2.0 * np.pi)
+            raise ConvergenceError(
+                f"answers at {at:.4g} Hz do not come within the tolerance from those beside it: "
+                "allow more, or find all modes",
+                residual=float("nan"),
+            )
+        return np.sqrt(left * right)
+
+    def _ratio(self, omega: Array) -> Array:
+        return np.maximum(self.ratios(omega), _LEAST_RATIO)
+
+
+@dataclass(kw_only=True, eq=False)
+class _Span:
+    """A growing M-orthonormal basis V of all answers, with M V."""
+
+    n_coordinates: int
+    size: int = 0
+    _vectors: Array = field(init=False)
+    _loaded: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._vectors = np.empty((self.n_coordinates, 256), order="F")
+        self._loaded = np.empty_like(self._vectors)
+
+    def take(self, enquiry: Enquiry, answers: Array, small: float) -> None:
+        """Take in the dynamic part of answers, but for directions that are small in it."""
+        moved = answers - enquiry.still
+        block = np.hstack([np.real(moved), np.imag(moved)])
+        loaded = enquiry.pencil.mass @ block
+        squares = np.einsum("ij,ij->j", block, loaded).reshape(2, -1).sum(axis=0)
+        # combinations as large as they are, every reading alike: one that is far counts too
+        squares[: enquiry.n_combined] = squares[: enquiry.n_combined].sum()
+        scale = np.tile(1.0 / np.sqrt(np.where(squares > 0.0, squares, 1.0)), 2)
+        self._append(enquiry.pencil.mass, *self._apart(block * scale, loaded * scale), small**2)
+
+    def _apart(self, block: Array, loaded: Array) -> tuple[Array, Array]:
+        """Take off what lies in the basis already."""
+        basis, heavy = self._vectors[:, : self.size], self._loaded[:, : self.size]
+        for _ in range(2):
+            along = heavy.T @ block
+            block, loaded = block - basis @ along, loaded - heavy @ along
+        return block, loaded
+
+    def _append(self, mass: Product, block: Array, loaded: Array, least: float) -> None:
+        """Append the directions of a block that are larger than the least square."""
+        squares, turned = linalg.eigh(block.T @ loaded)
+        kept = squares > least
+        new = block @ (turned[:, kept] / np.sqrt(squares[kept]))
+        heavy = mass @ new
+        for _ in range(2):  # small directions bring back what was taken off
+            new, heavy = self._apart(new, heavy)
+            lower = linalg.cholesky(new.T @ heavy, lower=True)
+            back = linalg.solve_triangular(lower, np.eye(len(lower)), lower=True).T
+            new, heavy = new @ back, heavy @ back
+        self._make_room(new.shape[1])
+        here = slice(self.size, self.size + new.shape[1])
+        self._vectors[:, here], self._loaded[:, here] = new, heavy
+        self.size += new.shape[1]
+
+    def _make_room(self, more: int) -> None:
+        while self.size + more > self._vectors.shape[1]:
+            self._vectors = np.asfortranarray(np.hstack([self._vectors, self._vectors]))
+            self._loaded = np.asfortranarray(np.hstack([self._loaded, self._loaded]))
+
+    def diagonal(self, pencil: DampedPencil) -> tuple[Array, Array]:
+        """Return circular frequencies and shapes of the structure within the span."""
+        basis = self._vectors[:, : self.size]
+        square, turned = linalg.eigh(basis.T @ (pencil.stiffness @ basis))
+        return np.sqrt(np.maximum(square, 0.0)), basis @ turned
+
+
+def _difference(
+    enquiry: Enquiry, basis: tuple[Array, Array] | None, shift: complex, found: Array
+) -> Array:
+    """Return by how much a basis is off an answer that is known, and how large that is.
+
+    Both over the routes and over the maps, for each of what is read and probed with: an array of
+    shape (2, 2, n_probes).
+    """
+    true = enquiry.seen(found[:, enquiry.n_combined :])
+    told = np.zeros_like(true)
+    if basis is not None:
+        omega, shapes = basis
+        seen, probed = enquiry.seen(shapes), enquiry.probed.T @ shapes
+        # statics are known: modes left out follow without delay
+        dynamic = 1.0 / (omega**2 - shift) - 1.0 / omega**2
+        told = enquiry.at_rest + seen @ (dynamic[:, None] * probed.T)
+    return np.array(
+        [[np.linalg.norm(x[rows], axis=0) for rows in enquiry.groups] for x in (told - true, true)]
+    )
+
+
+def _largest(off: Array, sizes: Array) -> Array:
+    """Return the largest relative error at each frequency."""
+    shares = np.divide(off, sizes, out=np.zeros_like(off), where=sizes > 0.0)
+    return shares.reshape(len(off), -1).max(axis=1)
+
+
+def _first_omega(pencil: DampedPencil, rest: Factor) -> float:
+    """Return about the lowest circular frequency, from above [rad/s]."""
+    krylov = Krylov(pencil.mass, rest, (_STEPS + 2) * BLOCK)
+    while krylov.size < _STEPS * BLOCK and krylov.extend():
+        pass
+    return float(1.0 / np.sqrt(krylov.ritz_pairs()[0][-1]))
+
+
+def _nobody(share: float) -> None:
+    """Tell nobody."""
+    del share

@@ -1,0 +1,138 @@
+"""Ask a structure how it answers: which forces push it, and where it is looked at.
+
+The dynamic part of an answer at a frequency, what it is beyond the static one,
+
+    (K - z M)^-1 b - K^-1 b = z (K - z M)^-1 M K^-1 b,      z = omega^2 / (1 + 2 i zeta),
+
+is smooth over a route: what only bends a slab under one wheel has gone. The many forces of a route
+are therefore few combinations, found from what a random motion does to all of them (Halko,
+Martinsson and Tropp, SIAM Review 53 (2011) 217-288).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from jaxtyping import Complex, Float
+
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics.pencil import DampedPencil
+from trundle.dynamics.sparse_solver import Factor
+
+__all__ = ["Enquiry", "Questions"]
+
+_DRAWN = 160  # random motions by which the combinations of forces are found, at first
+_FILLED = 0.8  # of them, that may be needed before more are drawn
+_PROBES = 12  # random combinations of all forces by which errors are told
+_SHARE = 0.05  # of the tolerance, at which a combination of forces is small
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Questions:
+    """Say where a structure is pushed and where it is looked at, by its coordinates.
+
+    Attributes
+    ----------
+    pushed : sparse array, shape (n_pushed, n_coordinates)
+        How each place of all routes sees the coordinates: by reciprocity, what a unit force there
+        does to them.
+    read : sparse array, shape (n_read, n_coordinates)
+        The same of each reading.
+    mapped : sparse array, shape (n_mapped, n_coordinates)
+        The same of the places of maps, which are looked at only.
+    """
+
+    pushed: SparseMatrix
+    read: SparseMatrix
+    mapped: SparseMatrix
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Enquiry:
+    """Hold all forces whose answers are asked for, few for many.
+
+    Attributes
+    ----------
+    pencil : DampedPencil
+        The structure.
+    questions : Questions
+        What is asked of it.
+    forces : ndarray of float, shape (n_coordinates, n_forces)
+        Combinations of what pushes, then what reads, then probes.
+    still : ndarray of float, shape (n_coordinates, n_forces)
+        Their static answers.
+    n_combined : int
+        How many of them are combinations of what pushes.
+    """
+
+    pencil: DampedPencil
+    questions: Questions
+    forces: Float[Array, "coordinates forces"]
+    still: Float[Array, "coordinates forces"]
+    n_combined: int
+
+    @classmethod
+    def of(
+        cls,
+        pencil: DampedPencil,
+        questions: Questions,
+        rest: Factor,
+        *,
+        highest: complex,
+        tolerance: float,
+    ) -> Enquiry:
+        """Find the combinations of what pushes that matter up to a shift."""
+        few = _combined(pencil, questions.pushed, rest, highest, _SHARE * tolerance)
+        count = questions.pushed.shape[0]
+        drawn = np.random.default_rng(count).standard_normal((count, _PROBES)) / np.sqrt(count)
+        forces = np.hstack([few, questions.read.T.toarray(), questions.pushed.T @ drawn])
+        return cls(
+            pencil=pencil,
+            questions=questions,
+            forces=forces,
+            still=rest.solve(forces),
+            n_combined=few.shape[1],
+        )
+
+    @property
+    def probed(self) -> Float[Array, "coordinates probes"]:
+        """What is read and what is probed with: forces whose answers tell errors."""
+        return self.forces[:, self.n_combined :]
+
+    @cached_property
+    def at_rest(self) -> Float[Array, "seen probes"]:
+        """Static answers of the probes, as they are seen."""
+        return self.seen(self.still[:, self.n_combined :])
+
+    def seen(self, motion: Array) -> Array:
+        """Return what routes and maps see of motions of the coordinates."""
+        return np.concatenate([self.questions.pushed @ motion, self.questions.mapped @ motion])
+
+    @cached_property
+    def groups(self) -> tuple[slice, slice]:
+        """Which of what is seen lies on routes, and which on maps."""
+        n, more = self.questions.pushed.shape[0], self.questions.mapped.shape[0]
+        return slice(0, n), slice(n, n + more)
+
+    def at(self, shift: complex) -> Complex[Array, "coordinates forces"]:
+        """Return the answers to all forces at a shift."""
+        return self.pencil.factorise_damped(shift).solve(self.forces)
+
+
+def _combined(
+    pencil: DampedPencil, pushed: SparseMatrix, rest: Factor, highest: complex, small: float
+) -> Array:
+    """Return combinations of forces, so that the others move nothing to speak of."""
+    solver, drawn = pencil.factorise_damped(highest), _DRAWN
+    n_pushed, n = pushed.shape
+    while True:
+        loads = pencil.mass @ np.random.default_rng(drawn).standard_normal((n, min(drawn, n)))
+        moved = solver.solve(loads) - rest.solve(loads)
+        told = pushed @ np.hstack([np.real(moved), np.imag(moved)])
+        patterns, sizes, _ = np.linalg.svd(told, full_matrices=False)
+        kept = int(np.count_nonzero(sizes > small * sizes[0]))
+        if kept <= _FILLED * drawn or kept == n_pushed or drawn >= n:
+            return pushed.T @ patterns[:, :kept]
+        drawn *= 2

@@ -1,0 +1,137 @@
+"""Find by what a building answers to a study's jobs, in place of all its modes.
+
+Each frequency at which it is solved is a task that any executor computes; they are taken in by
+their order, so that results have the same bits whoever computes them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from typing_extensions import TypeIs
+
+from trundle._progress import Progress
+from trundle._typing import Array
+from trundle.dynamics import ByMaterial, Enquiry, Modes, repeatable
+from trundle.run.carried import carried_out
+from trundle.run.executor import Executor
+from trundle.run.jobs import Job
+from trundle.run.seen import map_rows, seen_by_jobs
+from trundle.structure import Structure
+from trundle.structure.elements import Damped
+from trundle.structure.superelements import PartedStructure, answering_by_parts, questions_of
+
+__all__ = ["AnswerTask", "answers_to_jobs", "asks_for_answers"]
+
+_REDUCED = 0.3  # of the whole, what is done when parts are reduced, for progress
+_AT_ONCE = 1e9  # bytes of answers that are held together
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class AnswerTask:
+    """Solve a structure at one frequency.
+
+    Attributes
+    ----------
+    name : str
+        Which frequency.
+    shift : complex
+        z of it [rad2/s2].
+    alone : bool
+        Never: frequencies are solved beside each other.
+    """
+
+    name: str
+    shift: complex
+    alone: bool = False
+
+    def compute(self, shared: Any, progress: Progress | None = None) -> Array:  # noqa: ANN401
+        """Solve for all forces; `shared` is the enquiry."""
+        del progress
+        return shared.at(self.shift)
+
+
+def asks_for_answers(structure: Structure) -> TypeIs[PartedStructure]:
+    """Return whether combinations that answer are wanted in place of all modes."""
+    return isinstance(structure, PartedStructure) and structure.parting.response_tolerance > 0.0
+
+
+def answers_to_jobs(
+    structure: PartedStructure,
+    jobs: Sequence[Job],
+    *,
+    f_max: float,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> Modes:
+    """Return by what a structure answers between routes, points and maps of jobs.
+
+    Parameters
+    ----------
+    structure : PartedStructure
+        The structure, by its parts.
+    jobs : sequence of Job
+        What is computed on it.
+    f_max : float
+        Highest frequency at which it answers [Hz].
+    executor : Executor, optional
+        Who solves; threads of this process unless given.
+    progress : callable, optional
+        Told about how much of the work is done, 0 to 1.
+
+    Raises
+    ------
+    ConvergenceError
+        It does not come within the tolerance of the parting.
+    """
+    told = progress or _nobody
+    structure.check_reach(f_max)
+    structure.reduced(tell=lambda _, share: told(_REDUCED * share))
+    told(_REDUCED)
+
+    def answer_all(enquiry: Enquiry, shifts: Sequence[complex]) -> Iterator[Array]:
+        """Give the answers in the order of the shifts, a few held at a time."""
+        at_once = max(2, int(_AT_ONCE / (16.0 * enquiry.forces.size)))
+        for start in range(0, len(shifts), at_once):
+            tasks = [
+                AnswerTask(name=f"answers {start + i}", shift=shift)
+                for i, shift in enumerate(shifts[start : start + at_once])
+            ]
+            found = carried_out([(task, enquiry) for task in tasks], executor, _nobody)
+            for task in tasks:
+                yield found.pop(task.name)
+
+    def ratios(omega: Array) -> Array:
+        """Return the least damping ratio of any method and material."""
+        return np.minimum.reduce([_least_ratios(structure, job, omega) for job in jobs])
+
+    with repeatable():
+        dofs, read = seen_by_jobs(structure, jobs)
+        return answering_by_parts(
+            structure,
+            questions_of(structure, dofs, read, map_rows(structure, jobs)),
+            ratios,
+            f_max=f_max,
+            tolerance=structure.parting.response_tolerance,
+            answer_all=answer_all,
+            progress=lambda share: told(_REDUCED + (1.0 - _REDUCED) * share),
+        )
+
+
+def _least_ratios(structure: Structure, job: Job, omega: Array) -> Array:
+    """Return the least ratio that a mode at each frequency may have by a job's method."""
+    damping = job.method.interaction.damping
+    least = damping.ratios(omega)
+    if isinstance(damping, ByMaterial):
+        known = (one.damping_ratio for one in structure.elements if isinstance(one, Damped))
+        for ratio in known:
+            least = least if ratio is None else np.minimum(least, ratio)
+    return least
+
+
+def _nobody(share: float) -> None:
+    """Tell nobody."""
+    del share

@@ -67,8 +67,7 @@ What others have printed, what standards define, or what other programs give, be
 [](../validation.md), from which these tables are taken as they stand. The others hold trundle against closed forms, against invariants, and against integrations made for the purpose. A
 difference is relative where it is in per cent, and in the unit of its row otherwise.
 
-The paper that the project began with, T.-C. Pan, A. Mita and J. Li (2001), is a study: `make demo`, or `trundle run examples/paper/study.toml`,
-prints its Tables 2 and 3 beside ours; [](gallery.md) shows its plan.
+The paper that the project began with, T.-C. Pan, A. Mita and J. Li (2001), has a page of its own with its Tables 2 and 3 beside ours: [](paper.md).
 """
 
 

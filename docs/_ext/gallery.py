@@ -1,4 +1,4 @@
-"""Make the gallery: what each example is, with a plan drawn from its study without running it."""
+"""Make the gallery: what each example is, its plan, and what the quick ones give."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
+from example_runs import NOT_HERE, QUICK, outcome_of
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pages import DOCS, GENERATED, ROOT, code, write_page
@@ -47,7 +48,8 @@ def write_gallery() -> None:
 
 _WORDS = """\
 Every folder of `examples`, with the plan of its floor: slabs, columns and beams, where vehicles drive or people walk, and where the response is
-read. Nothing was run for these pictures: `trundle run` draws them too, beside the results.
+read. This build ran the quick ones: a picture of their results and their conclusion stand below their plans, as in the report that `trundle run` writes. Of the
+others it is said what runs them.
 """
 
 
@@ -61,6 +63,7 @@ def _without_study(folder: Path) -> Iterator[str]:
     yield f"\n## {title}\n\n{words}\n"
     if command:
         yield _shown(command)
+    yield from _not_here(folder)
     yield f"In `examples/{folder.name}`.\n"
 
 
@@ -71,12 +74,29 @@ def _entry(folder: Path) -> Iterator[str]:
     yield f"\n## {file.general.title}\n\n{_said_above(text)}\n"
     yield f"![Plan: {file.general.title}](gallery/{_picture(folder)}){{.plan}}\n"
     yield _shown(f"trundle run {path.relative_to(ROOT).as_posix()}")
+    yield from _outcome(folder)
     used = [kind for kind in KINDS if kind.name in file.given]
     linked = ", ".join(f"[{code(one.header)}](keys/{one.name}.md)" for one in used)
     yield f"In it: {linked}.\n"
     others = [one.name for one in sorted(folder.iterdir()) if one.is_file() and one != path]
     if others:
         yield f"Beside it in `examples/{folder.name}`: {', '.join(map(code, others))}.\n"
+
+
+def _outcome(folder: Path) -> Iterator[str]:
+    """Give picture and conclusion of a quick example; of another, what runs it."""
+    if folder.name not in QUICK:
+        yield from _not_here(folder)
+        return
+    found = outcome_of(folder)
+    there = _copied(found.picture, f"{folder.name}-result.svg")
+    yield f"![{found.title}](gallery/{there.name}){{.plan}}\n"
+    yield f"**Run by this build**, {found.runs} runs a case: {found.sentence}\n"
+
+
+def _not_here(folder: Path) -> Iterator[str]:
+    if folder.name in NOT_HERE:
+        yield f"Not run by this build: {NOT_HERE[folder.name]}.\n"
 
 
 def _said_above(text: str) -> str:
@@ -97,15 +117,20 @@ def _shown(command: str) -> str:
 def _picture(folder: Path) -> str:
     """Return the name of an example's picture, drawn once for what it is drawn from."""
     given = _GIVEN.get(folder.name)
-    there = GENERATED / "gallery" / f"{folder.name}{'.svg' if given is None else given.suffix}"
-    there.parent.mkdir(parents=True, exist_ok=True)
     source = given or _KEPT / f"{folder.name}-{_content(folder)}.svg"
     if not source.exists():
         _KEPT.mkdir(parents=True, exist_ok=True)
         _draw(load_study(folder / "study.toml"), source)
+    return _copied(source, f"{folder.name}{source.suffix}").name
+
+
+def _copied(source: Path, name: str) -> Path:
+    """Return a picture among those of the page; one that has not changed keeps its time."""
+    there = GENERATED / "gallery" / name
+    there.parent.mkdir(parents=True, exist_ok=True)
     if not there.exists() or there.read_bytes() != source.read_bytes():
         shutil.copyfile(source, there)
-    return there.name
+    return there
 
 
 def _content(folder: Path) -> str:

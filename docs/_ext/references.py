@@ -12,6 +12,7 @@ from diagrams import write_diagrams
 from gallery import write_gallery
 from library_pages import write_library
 from pages import DOCS
+from paper_page import write_paper
 from sphinx.application import Sphinx
 from study_keys import write_keys
 
@@ -30,7 +31,7 @@ def _write(app: Sphinx) -> None:
     del app
     for write in (
         write_api, write_cases, write_commands, write_diagrams, write_gallery, write_keys,
-        write_library,
+        write_library, write_paper,
     ):  # fmt: skip
         write()
 

@@ -196,3 +196,33 @@ def test_a_start_gives_days_and_nights_and_a_wrong_one_is_refused(command, tmp_p
     assert code == 2
     assert "--start 'yesterday': must be a local time" in said.err
     assert not (tmp_path / "other").exists()
+
+
+def test_units_of_the_screen_are_those_asked_for(command):
+    """0.267 gal are 0.272 mg, 30 um/s are 1.18 mil/s; JSON keeps the units that its names say."""
+    code, said = command("loud.csv", "--velocity", "mil/s", "--acceleration", "mg")
+    assert code == 0
+    assert "um/s" not in said.out
+    assert " gal" not in said.out
+    assert "peak [mg]" in said.out
+    (levels,) = rows_of(said.out, "loud.csv: 20 s of velocity at 200 Hz")
+    peak, rms = map(float, levels[1:3])
+    assert peak == pytest.approx(0.2666 / 0.980665, rel=0.02)
+    assert rms == pytest.approx(30.0 / 25.4, rel=0.01)
+    _, said = command("loud.csv", "--velocity", "mil/s", "--json")
+    (found,) = json.loads(said.out)
+    assert found["channels"][0]["rms_um_s"] == pytest.approx(30.0, rel=0.01)
+
+
+def test_words_of_no_list_are_refused_together(command, tmp_path):
+    """Two units and a rule: each with its option, what there is, and what may have been meant."""
+    code, said = command(
+        "loud.csv", "--velocity", "mils/s", "--acceleration", "g", "--averaging", "fastt"
+    )
+    assert code == 2
+    told = " ".join(said.err.split())
+    assert "--velocity must be one of in/s, m/s, mil/s, mm/s, um/s; got 'mils/s'" in told
+    assert "(did you mean 'mil/s'?)" in told
+    assert "--acceleration must be one of gal, in/s2, m/s2, mg, mm/s2; got 'g'" in told
+    assert "(did you mean 'fast'?)" in told
+    assert not (tmp_path / "loud-results").exists()

@@ -53,6 +53,15 @@ def test_levels_and_changes_are_those_of_each_point_and_band(compared, capsys):
     assert "set mesh_size to 0.75 m" in " ".join(said.split())
 
 
+def test_levels_are_in_the_unit_of_the_study_s_report(compared, capsys):
+    """20 um/s are 0.02 mm/s; changes have no unit."""
+    compared.write_text(GOOD + '\n[report]\nvelocity = "mm/s"\n')
+    meshes_command.compare(compared)
+    said = capsys.readouterr().out
+    assert rows_of(said)[0][:4] == ["4", "0.02", "0.01", "+100 %"]
+    assert "rms velocity [mm/s]" in said
+
+
 def test_a_band_is_carried_where_seven_elements_span_a_wave(compared, capsys):
     """2 pi sqrt(D / m) / (7 h)^2 with D = 30 GPa 0.2^3 / 12 (nu = 0.2) and 790 kg/m2: 9.3 Hz."""
     meshes_command.compare(compared)

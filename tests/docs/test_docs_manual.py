@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 from urllib.parse import unquote
 
+import example_runs
 import pytest
 import typer.main
 from pydantic import BaseModel
@@ -152,7 +153,8 @@ def test_every_example_is_in_the_gallery(page, manual):
         assert f"examples/{folder.name}" in text
     pictures = page("generated/gallery").select("img")
     studies = list((ROOT / "examples").glob("*/study.toml"))
-    assert len(pictures) == len(studies)
+    assert len(pictures) == len(studies) + len(example_runs.QUICK)
+    assert text.count("Run by this build") == len(example_runs.QUICK)
     for one in pictures:
         assert (manual / "generated" / one["src"]).resolve().stat().st_size > 5000
 

@@ -315,7 +315,7 @@ def test_a_case_that_is_no_route_is_called_by_its_name():
 def test_a_curve_ends_with_its_name_at_its_last_limit():
     """In um/s: VC-A of 50 um/s at 80 Hz, with its rise to 100 um/s at 4 Hz."""
     _, (axes,) = new_figure()
-    figures.draw_criterion(axes, find_criterion("VC-A"))
+    figures.draw_criterion(axes, find_criterion("VC-A"), 1e-6)
     (line,) = axes.lines
     np.testing.assert_allclose(line.get_xydata(), [[4.0, 100.0], [8.0, 50.0], [80.0, 50.0]])
     (name,) = axes.texts

@@ -18,7 +18,7 @@ from trundle.results.results_folder import check_target, new_results_folder
 from trundle.run.footfall import FootfallAsked, StudyFootfall, study_footfall
 from trundle.simulate import footfall_rule
 from trundle.study_file.build import load_study
-from trundle.views.footfall import FootfallDose, level_words, worst_rows
+from trundle.views.footfall import FootfallDose, level_unit, level_words, worst_rows
 
 __all__ = ["FootfallOptions", "footfall"]
 
@@ -66,7 +66,7 @@ def _print(found: StudyFootfall, out: Path) -> None:
     title = f"{found.study.title}: {level_words(found)} by {response.load.title}"
     print_table(title, _HEADINGS, worst_rows(found))
     x, y, on = found.where(response.worst)
-    level = response.governing.level[response.worst]
+    level = response.governing.level[response.worst] / level_unit(found)[1]
     say(f"worst: {level:.3g} at ({x:.2f}, {y:.2f}) m{f' on {on}' if on else ''}")
     say(f"source: {response.load.source}\n        confidence: {response.load.confidence}")
     say(f"\ntable and maps: {out.resolve()}")

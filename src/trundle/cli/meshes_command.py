@@ -15,7 +15,7 @@ from trundle.signals import nominal_frequency
 from trundle.structure import building_resolution, resolved_frequency
 from trundle.study.model import Study
 from trundle.study_file.build import load_study
-from trundle.units import MICROMETRE_PER_SECOND
+from trundle.views.words import shown
 
 __all__ = ["compare"]
 
@@ -38,15 +38,16 @@ def compare(path: Path, *, yes: bool = False) -> None:
         found = compare_meshes(study, tell=tell)
     coarse, fine = found.sizes
     reach = _reach(study, coarse)
+    unit, size = shown("m/s", study.report)
     for p, point in enumerate(found.points):
         print_table(
-            f"{point}: {found.case}, road {found.road}, {found.method}; rms velocity [um/s]",
+            f"{point}: {found.case}, road {found.road}, {found.method}; rms velocity [{unit}]",
             ("band [Hz]", f"{coarse:g} m", f"{fine:g} m", "change", "carried by the mesh"),
             (
                 (
                     f"{nominal_frequency(float(f)):g}",
-                    f"{found.levels[0, p, b] / MICROMETRE_PER_SECOND:.4g}",
-                    f"{found.levels[1, p, b] / MICROMETRE_PER_SECOND:.4g}",
+                    f"{found.levels[0, p, b] / size:.4g}",
+                    f"{found.levels[1, p, b] / size:.4g}",
                     f"{100.0 * (found.ratios[p, b] - 1.0):+.0f} %",
                     "yes" if f <= reach else "no",
                 )

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 __all__ = [
+    "AccelerationShown",
     "Author",
     "Averaging",
     "Client",
@@ -30,6 +31,7 @@ __all__ = [
     "Simulation",
     "Start",
     "Unit",
+    "VelocityShown",
     "Yes",
 ]
 
@@ -115,6 +117,20 @@ Simulation = Annotated[
 ]
 Point = Annotated[
     str | None, typer.Option("--point", help="Point of that study. \\[default: its first]")
+]
+VelocityShown = Annotated[
+    str,
+    typer.Option(
+        "--velocity",
+        help="Unit of page, figures and screen: um/s, mm/s, m/s, mil/s or in/s.",
+    ),
+]
+AccelerationShown = Annotated[
+    str,
+    typer.Option(
+        "--acceleration",
+        help="Unit of the same: gal, m/s2, mm/s2, mg or in/s2.",
+    ),
 ]
 RecordOut = Annotated[
     Path | None,

@@ -3,8 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal, TypeAlias
 
-__all__ = ["ReportPlan"]
+__all__ = ["AccelerationUnit", "ReportPlan", "VelocityUnit"]
+
+AccelerationUnit: TypeAlias = Literal["gal", "m/s2", "mm/s2", "mg", "in/s2"]
+"""Units that accelerations are written in."""
+
+VelocityUnit: TypeAlias = Literal["um/s", "mm/s", "m/s", "mil/s", "in/s"]
+"""Units that velocities are written in."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,6 +26,9 @@ class ReportPlan:
         Name of a PNG or JPEG picture among the study's files; empty without one.
     acceleration, velocity, displacement, load : str
         Units in which the report's tables and figures are written.
+    chosen : frozenset of str
+        Which of these four are asked for by name; a page that writes a quantity in another unit
+        than a report does, keeps it where its own is not among them.
     """
 
     client: str = ""
@@ -31,6 +41,7 @@ class ReportPlan:
     velocity: str = "um/s"
     displacement: str = "um"
     load: str = "t"
+    chosen: frozenset[str] = frozenset()
 
     @property
     def heading(self) -> tuple[tuple[str, str], ...]:

@@ -6,13 +6,18 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from trundle.run.footfall import StudyFootfall
+from trundle.views.words import shown
 
-__all__ = ["FootfallDose", "footfall_rows", "level_words", "worst_places", "worst_rows"]
+__all__ = [
+    "FootfallDose",
+    "footfall_rows",
+    "level_unit",
+    "level_words",
+    "worst_places",
+    "worst_rows",
+]
 
-_WORDS = {
-    "response_factor": ("response factor", ""),
-    "peak_acceleration": ("peak acceleration", "m/s2"),
-}
+_WORDS = {"response_factor": "response factor", "peak_acceleration": "peak acceleration"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,16 +28,28 @@ class FootfallDose:
     duration: float
 
 
+def level_unit(found: StudyFootfall) -> tuple[str, float]:
+    """Return the unit that levels are shown in, and its size; no unit for a factor.
+
+    Accelerations of people who walk are told in m/s2, as the guides do, unless the study's report
+    asks for another unit.
+    """
+    if found.response.quantity == "response_factor":
+        return "", 1.0
+    report = found.study.report
+    return shown("m/s2", report) if "acceleration" in report.chosen else ("m/s2", 1.0)
+
+
 def level_words(found: StudyFootfall) -> str:
     """Return what levels are, with their unit."""
-    name, unit = _WORDS[found.response.quantity]
+    name, (unit, _) = _WORDS[found.response.quantity], level_unit(found)
     return f"{name} [{unit}]" if unit else name
 
 
 def footfall_rows(
     found: StudyFootfall, dose: FootfallDose | None
 ) -> tuple[list[str], list[list[object]]]:
-    """Return headings and rows of the table of all places."""
+    """Return headings and rows of the table of all places, for programs: in SI."""
     response, quantity = found.response, found.response.quantity
     name = quantity if quantity == "response_factor" else f"{quantity}_m_s2"
     headings = ["surface", "x_m", "y_m", name, "steady_state", "transient", "pace_hz"]
@@ -60,14 +77,14 @@ def worst_places(found: StudyFootfall) -> list[int]:
 
 def worst_rows(found: StudyFootfall) -> Iterator[tuple[str, ...]]:
     """Give surface, level, place, pace, what governs and walker of each surface's worst place."""
-    governing = found.response.governing
+    governing, (_, size) = found.response.governing, level_unit(found)
     for (grid, _), i in zip(found.parts(), worst_places(found), strict=True):
         x, y, _ = found.where(i)
         at_x, at_y, at_on = found.where(int(governing.walker[i]))
         h = int(governing.harmonic[i])
         yield (
             grid.label or "floor",
-            f"{governing.level[i]:.3g}",
+            f"{governing.level[i] / size:.3g}",
             f"{x:.2f}, {y:.2f}",
             f"{governing.pace[i]:.3f}",
             f"harmonic {h}" if h else "impulses",

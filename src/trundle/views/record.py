@@ -9,15 +9,17 @@ import numpy as np
 from trundle import __version__
 from trundle.records.assess import RecordResult
 from trundle.signals import nominal_frequency
+from trundle.study.report_plan import ReportPlan
 from trundle.units import GAL, MICROMETRE_PER_SECOND
 from trundle.views.record_answer import answers
 from trundle.views.record_survey import dose_rows, event_rows
+from trundle.views.words import USUAL, shown
 
-__all__ = ["level_rows", "record_rows", "record_summary"]
+__all__ = ["level_rows", "record_rows", "record_summary", "shown_rows"]
 
 
 def record_rows(result: RecordResult) -> list[dict[str, Any]]:
-    """Return single numbers of every channel, in engineers' units."""
+    """Return single numbers of every channel, for programs: in units that never change."""
     reduced = result.reduced
     return [
         {
@@ -30,6 +32,20 @@ def record_rows(result: RecordResult) -> list[dict[str, Any]]:
             "vdv": float(reduced.vdv[0, i]),
         }
         for i, name in enumerate(result.record.channel_names)
+    ]
+
+
+def shown_rows(result: RecordResult, report: ReportPlan = USUAL) -> list[dict[str, Any]]:
+    """Return the same for people: peak and RMS in the units of a report."""
+    reduced = result.reduced
+    peak, rms = shown("m/s2", report)[1], shown("m/s", report)[1]
+    return [
+        {
+            **row,
+            "peak": float(reduced.peak_acceleration[0, i]) / peak,
+            "rms": float(reduced.rms_velocity[0, i]) / rms,
+        }
+        for i, row in enumerate(record_rows(result))
     ]
 
 

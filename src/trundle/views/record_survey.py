@@ -10,7 +10,9 @@ import numpy as np
 
 from trundle.records.assess import RecordResult
 from trundle.signals import nominal_frequency
+from trundle.study.report_plan import ReportPlan
 from trundle.units import MICROMETRE_PER_SECOND
+from trundle.views.words import USUAL, shown
 
 __all__ = [
     "EVENT_HEADINGS",
@@ -22,6 +24,7 @@ __all__ = [
     "percentile_rows",
     "psd_table",
     "running_table",
+    "shown_events",
 ]
 
 EVENT_HEADINGS = (
@@ -46,7 +49,7 @@ SHARES = {"L10": 0.1, "L50": 0.5}
 
 
 def event_rows(result: RecordResult) -> list[dict[str, Any]]:
-    """Return the events of all channels, in engineers' units; the time of day where it is known."""
+    """Return the events of all channels, for programs; the time of day where it is known."""
     return [
         {
             "channel": one.channel,
@@ -63,6 +66,14 @@ def event_rows(result: RecordResult) -> list[dict[str, Any]]:
         for one in result.events
         for event in one.events
     ]
+
+
+def shown_events(result: RecordResult, report: ReportPlan = USUAL) -> list[dict[str, Any]]:
+    """Return the same for people: the level in the units of a report."""
+    _, size = shown("m/s", report)
+    levels = [event.level / size for one in result.events for event in one.events]
+    rows = zip(event_rows(result), levels, strict=True)
+    return [{**row, "level": level} for row, level in rows]
 
 
 def _cut(before: bool, after: bool) -> str:

@@ -15,7 +15,7 @@ from trundle.report.canvas import Drawing, new_figure
 from trundle.report.figures.map import draw_building
 from trundle.run.footfall import StudyFootfall
 from trundle.study.map_plan import MapGrid
-from trundle.views.footfall import level_words
+from trundle.views.footfall import level_unit, level_words
 
 __all__ = ["drawings"]
 
@@ -49,7 +49,8 @@ def map_figure(found: StudyFootfall, grid: MapGrid, part: slice) -> Figure:
     (x0, x1), (y0, y1) = found.study.extent
     height = min(max(7.2 * (y1 - y0) / (x1 - x0), 1.2), 8.0)
     figure, (panel,) = new_figure(8.0, height + 1.6)
-    levels = np.where(governing.level > 0.0, governing.level, np.nan)
+    _, size = level_unit(found)
+    levels = np.where(governing.level > 0.0, governing.level / size, np.nan)
     low, high = _scale(levels)
     shown = grid.filled(levels[part])
     image = panel.pcolormesh(
@@ -72,7 +73,7 @@ def map_figure(found: StudyFootfall, grid: MapGrid, part: slice) -> Figure:
     panel.grid(visible=False)
     x, y, _ = found.where(worst)
     on = f"{grid.label}: " if grid.label else ""
-    panel.set_title(f"{on}largest {governing.level[worst]:.3g} at ({x:.2f}, {y:.2f}) m")
+    panel.set_title(f"{on}largest {governing.level[worst] / size:.3g} at ({x:.2f}, {y:.2f}) m")
     bar = figure.colorbar(image, ax=panel, location="bottom", shrink=0.6, aspect=40)
     bar.set_label(f"{level_words(found)}, {found.response.load.name}")
     ticks = [v * 10.0**k for k in range(-6, 6) for v in (1.0, 2.0, 5.0) if low < v * 10.0**k < high]

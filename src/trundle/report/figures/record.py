@@ -12,34 +12,42 @@ from trundle.report.canvas import COLOURS, Drawing, new_figure
 from trundle.report.figures.record_levels import percentiles_figure, record_spectra_figure
 from trundle.report.figures.record_spectra import psd_figure, spectrogram_figure
 from trundle.report.figures.record_time import running_figure, time_scale
-from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.study.report_plan import ReportPlan
+from trundle.views.words import USUAL, shown
 
 __all__ = ["drawings"]
 
 _MOST_CHANNELS = 6
 
 
-def drawings(result: RecordResult) -> Iterator[Drawing]:
+def drawings(result: RecordResult, report: ReportPlan = USUAL) -> Iterator[Drawing]:
     """Give the levels on the criteria, then how the record runs, as they stand on the page.
+
+    Parameters
+    ----------
+    result : RecordResult
+        What is said of the record.
+    report : ReportPlan
+        Has the units that they are drawn in.
 
     Yields
     ------
     Drawing
         One after the other.
     """
-    yield from _levels(result)
-    yield from _frequencies(result)
-    yield _history(result)
+    yield from _levels(result, report)
+    yield from _frequencies(result, report)
+    yield _history(result, report)
 
 
-def _levels(result: RecordResult) -> Iterator[Drawing]:
+def _levels(result: RecordResult, report: ReportPlan) -> Iterator[Drawing]:
     """Give band levels on the criteria, and how they run."""
     running = result.survey.running
     yield Drawing(
         name="spectra",
         title="Velocity spectra on criteria",
         caption=f"RMS velocity in one-third octaves of {_channels(result)}.",
-        draw=lambda: record_spectra_figure(result, _MOST_CHANNELS),
+        draw=lambda: record_spectra_figure(result, report, _MOST_CHANNELS),
     )
     yield Drawing(
         name="percentiles",
@@ -49,7 +57,7 @@ def _levels(result: RecordResult) -> Iterator[Drawing]:
             f"(running levels exceeded 10 % and 50 % of the time, {running.step:.3g} s apart, "
             f"{_rule(running.averaging)}), and the mean over the whole record."
         ),
-        draw=lambda: percentiles_figure(result, _MOST_CHANNELS),
+        draw=lambda: percentiles_figure(result, report, _MOST_CHANNELS),
     )
     yield Drawing(
         name="running",
@@ -59,11 +67,11 @@ def _levels(result: RecordResult) -> Iterator[Drawing]:
             "motion, and in the band that is loudest. Events are shaded. A criterion's line is its "
             "limit at 8 Hz and above; below, and for all motion together, its limit is another."
         ),
-        draw=lambda: running_figure(result, _MOST_CHANNELS),
+        draw=lambda: running_figure(result, report, _MOST_CHANNELS),
     )
 
 
-def _frequencies(result: RecordResult) -> Iterator[Drawing]:
+def _frequencies(result: RecordResult, report: ReportPlan) -> Iterator[Drawing]:
     """Give the power spectral density, and how it goes over time."""
     spectrum, gram = result.survey.spectrum, result.survey.spectrogram
     yield Drawing(
@@ -74,7 +82,7 @@ def _frequencies(result: RecordResult) -> Iterator[Drawing]:
             f"{spectrum.n_windows} Hann windows of {spectrum.width:.3g} s, half overlapping, lines "
             f"{spectrum.resolution:.3g} Hz apart. Its integral is the mean square."
         ),
-        draw=lambda: psd_figure(result, _MOST_CHANNELS),
+        draw=lambda: psd_figure(result, report, _MOST_CHANNELS),
     )
     many = "" if gram.per_column == 1 else f", the largest of {gram.per_column} in each column"
     yield Drawing(
@@ -84,11 +92,11 @@ def _frequencies(result: RecordResult) -> Iterator[Drawing]:
             f"Velocity of {_channels(result)} over time and frequency: root of the PSD of Hann "
             f"windows of {gram.width:.3g} s{many}."
         ),
-        draw=lambda: spectrogram_figure(result, _MOST_CHANNELS),
+        draw=lambda: spectrogram_figure(result, report, _MOST_CHANNELS),
     )
 
 
-def _history(result: RecordResult) -> Drawing:
+def _history(result: RecordResult, report: ReportPlan) -> Drawing:
     """Return the motion in time."""
     n = result.survey.outline.per_column
     rate = result.record.sampling_frequency
@@ -99,7 +107,7 @@ def _history(result: RecordResult) -> Drawing:
         caption=(
             f"Velocity and acceleration of {_channels(result)} above {result.high_pass:g} Hz{hull}."
         ),
-        draw=lambda: record_history_figure(result),
+        draw=lambda: record_history_figure(result, report),
     )
 
 
@@ -117,28 +125,29 @@ def _channels(result: RecordResult) -> str:
     return f"the first {_MOST_CHANNELS} of {n} channels"
 
 
-def record_history_figure(result: RecordResult) -> Figure:
+def record_history_figure(result: RecordResult, report: ReportPlan = USUAL) -> Figure:
     """Draw velocity with its running RMS, and acceleration, of the first channels."""
     outline, running = result.survey.outline, result.survey.running
-    shown = result.record.channel_names[:_MOST_CHANNELS]
+    names = result.record.channel_names[:_MOST_CHANNELS]
     figure, axes = new_figure(
-        7.2, 1.5 * 2 * len(shown) + 0.5, rows=2 * len(shown), columns=1, share="x"
+        7.2, 1.5 * 2 * len(names) + 0.5, rows=2 * len(names), columns=1, share="x"
     )
     kept = slice(0, 1) if outline.per_column == 1 else slice(0, 2)
+    (v_unit, v_size), (a_unit, a_size) = shown("m/s", report), shown("m/s2", report)
     unit, scale = time_scale(result.record.duration)
     time = np.repeat(outline.time, kept.stop) / scale
-    for i, name in enumerate(shown):
-        velocity = outline.velocity[i, :, kept].ravel() / MICROMETRE_PER_SECOND
-        acceleration = outline.acceleration[i, :, kept].ravel() / GAL
+    for i, name in enumerate(names):
+        velocity = outline.velocity[i, :, kept].ravel() / v_size
+        acceleration = outline.acceleration[i, :, kept].ravel() / a_size
         upper, lower = axes[2 * i], axes[2 * i + 1]
         upper.plot(time, velocity, color=COLOURS[0], linewidth=0.6)
-        level = running.whole[i] / MICROMETRE_PER_SECOND
+        level = running.whole[i] / v_size
         label = f"running {_rule(running.averaging)}"
         upper.plot(running.time / scale, level, color=COLOURS[1], label=label)
-        upper.set(ylabel="v [um/s]")
+        upper.set(ylabel=f"v [{v_unit}]")
         upper.set_title(name, loc="left", fontsize=9)
         upper.legend(loc="upper right")
         lower.plot(time, acceleration, color=COLOURS[2], linewidth=0.6)
-        lower.set(ylabel="a [gal]")
+        lower.set(ylabel=f"a [{a_unit}]")
     axes[-1].set(xlabel=f"time [{unit}]", xlim=(0.0, result.record.duration / scale))
     return figure

@@ -14,7 +14,8 @@ from trundle._typing import Array
 from trundle.records.assess import RecordResult
 from trundle.report.canvas import legend_below, line_look, make_logarithmic, new_figure
 from trundle.report.figures.record_time import time_scale
-from trundle.units import MICROMETRE_PER_SECOND
+from trundle.study.report_plan import ReportPlan
+from trundle.views.words import shown
 
 __all__ = ["psd_figure", "spectrogram_figure"]
 
@@ -23,30 +24,31 @@ _LOWEST = 0.7  # Hz: what lies below the lowest band is not shown
 _RANGE = 1e4  # of amplitudes that colours tell apart: 80 dB
 
 
-def psd_figure(result: RecordResult, most: int) -> Figure:
+def psd_figure(result: RecordResult, report: ReportPlan, most: int) -> Figure:
     """Draw the one-sided PSD of velocity of the first channels."""
     figure, (axes,) = new_figure(7.2, 3.8)
-    spectrum = result.survey.spectrum
+    spectrum, (unit, size) = result.survey.spectrum, shown("m/s", report)
     f = spectrum.frequencies
-    shown = (f >= 0.5) & (f <= 125.0) & (f < f[-1])  # half the rate holds half a line
+    kept = (f >= 0.5) & (f <= 125.0) & (f < f[-1])  # half the rate holds half a line
     for i, name in enumerate(result.record.channel_names[:most]):
         colour, dashes = line_look(i)
-        values = spectrum.psd[i, shown] / MICROMETRE_PER_SECOND**2
-        axes.plot(f[shown], values, color=colour, linestyle=dashes, linewidth=0.9, label=name)
-    axes.set(xlabel="frequency [Hz]", ylabel="PSD of velocity [(um/s)\N{SUPERSCRIPT TWO}/Hz]")
+        values = spectrum.psd[i, kept] / size**2
+        axes.plot(f[kept], values, color=colour, linestyle=dashes, linewidth=0.9, label=name)
+    axes.set(xlabel="frequency [Hz]", ylabel=f"PSD of velocity [({unit})\N{SUPERSCRIPT TWO}/Hz]")
     make_logarithmic(axes, "xy")
     _set_frequencies(axes, "x")
     legend_below(figure, *axes.get_legend_handles_labels(), columns=3)
     return figure
 
 
-def spectrogram_figure(result: RecordResult, most: int) -> Figure:
+def spectrogram_figure(result: RecordResult, report: ReportPlan, most: int) -> Figure:
     """Draw the spectrograms of the first channels, their colours on one scale."""
     names = result.record.channel_names[:most]
     figure, axes = new_figure(7.2, 2.4 * len(names) + 0.4, rows=len(names), columns=1, share="xy")
     gram = result.survey.spectrogram
     unit, scale = time_scale(result.record.duration)
-    levels = np.sqrt(gram.psd[: len(names)]) / MICROMETRE_PER_SECOND
+    v_unit, size = shown("m/s", report)
+    levels = np.sqrt(gram.psd[: len(names)]) / size
     top = float(levels.max()) or 1.0
     norm = LogNorm(max(top / _RANGE, float(np.quantile(levels, 0.02)), 1e-12 * top), top)
     meshes = list[QuadMesh]()
@@ -66,7 +68,7 @@ def spectrogram_figure(result: RecordResult, most: int) -> Figure:
         meshes.append(mesh)
     axes[-1].set(xlabel=f"time [{unit}]", xlim=(0.0, result.record.duration / scale))
     axes[-1].set_ylim(bottom=max(_LOWEST, float(gram.frequencies[0])))
-    label = "velocity [um/s/\N{SQUARE ROOT}Hz]"
+    label = f"velocity [{v_unit}/\N{SQUARE ROOT}Hz]"
     bar = figure.colorbar(
         meshes[0], ax=axes, label=label, pad=0.02, format=StrMethodFormatter("{x:g}")
     )

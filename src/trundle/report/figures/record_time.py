@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from trundle._typing import Array
 from trundle.records.assess import RecordResult
 from trundle.report.canvas import COLOURS, legend_below, make_logarithmic, new_figure
-from trundle.units import MICROMETRE_PER_SECOND
+from trundle.study.report_plan import ReportPlan
+from trundle.views.words import shown
 
 __all__ = ["running_figure", "time_scale"]
 
@@ -26,18 +27,19 @@ def time_scale(duration: float) -> tuple[str, float]:
     return ("min", 60.0) if duration >= _MINUTES else ("s", 1.0)
 
 
-def running_figure(result: RecordResult, most: int) -> Figure:
+def running_figure(result: RecordResult, report: ReportPlan, most: int) -> Figure:
     """Draw running RMS of the first channels, with criteria at 8 Hz and events."""
     names = result.record.channel_names[:most]
     figure, axes = new_figure(7.2, 2.4 * len(names) + 0.5, rows=len(names), columns=1, share="x")
     running = result.survey.running
     unit, scale = time_scale(result.record.duration)
+    v_unit, size = shown("m/s", report)
     for i, (panel, name) in enumerate(zip(axes, names, strict=True)):
         loudest = _largest_band(running.bands[i][running.shown], len(running.time))
         for number, (label, level) in enumerate(
             (("all motion", running.whole[i]), ("loudest band", loudest))
         ):
-            time, held = _thinned(running.time / scale, level / MICROMETRE_PER_SECOND)
+            time, held = _thinned(running.time / scale, level / size)
             panel.plot(time, held, color=COLOURS[number], linewidth=0.8, label=label)
         panel.broken_barh(
             [(event.start / scale, event.duration / scale) for event in result.events[i].events],
@@ -46,9 +48,9 @@ def running_figure(result: RecordResult, most: int) -> Figure:
             color=COLOURS[4],
             alpha=0.25,
         )
-        panel.set(ylabel="RMS velocity [um/s]")
+        panel.set(ylabel=f"RMS velocity [{v_unit}]")
         make_logarithmic(panel, "y")
-        _draw_limits(panel, result, i)
+        _draw_limits(panel, result, i, size)
         n = len(result.events[i].events)
         panel.set_title(f"{name}: {n} event{'' if n == 1 else 's'}", loc="left", fontsize=9)
     axes[-1].set(xlabel=f"time [{unit}]", xlim=(0.0, result.record.duration / scale))
@@ -73,13 +75,13 @@ def _thinned(
     return time[at], np.maximum.reduceat(level, at)
 
 
-def _draw_limits(panel: Axes, result: RecordResult, channel: int) -> None:
-    """Draw the limits at 8 Hz that lie among the levels, and the next one above."""
+def _draw_limits(panel: Axes, result: RecordResult, channel: int, size: float) -> None:
+    """Draw the limits at 8 Hz that lie among the levels, and the next above, in a unit [m/s]."""
     way = result.record.axes[channel] or "vertical"
     low, high = panel.get_ylim()
     above = list[float]()
     limits = {
-        c.title: float(c.limit(np.array([_AT]))[0]) / MICROMETRE_PER_SECOND
+        c.title: float(c.limit(np.array([_AT]))[0]) / size
         for c in result.criteria
         if c.quantity == "band_rms_velocity" and c.axis in {way, "each axis"}
     }

@@ -26,7 +26,6 @@ from trundle.results.study_result import StudyResult
 from trundle.study.model import Study
 from trundle.study.plans import Assessment
 from trundle.study.report_plan import ReportPlan
-from trundle.units import MICROMETRE_PER_SECOND
 from trundle.views.printed import ComparisonRow, comparison_rows
 from trundle.views.words import USUAL, rule_name, shown
 
@@ -207,7 +206,7 @@ def _draw_levels(
     )
 
 
-def draw_criterion(axes: Axes, criterion: Criterion, size: float = MICROMETRE_PER_SECOND) -> None:
+def draw_criterion(axes: Axes, criterion: Criterion, size: float) -> None:
     """Draw a velocity criterion with its name at its end, in a unit of that size [m/s]."""
     limits = criterion.limits / size
     axes.plot(criterion.frequencies, limits, color="black", linewidth=0.9)

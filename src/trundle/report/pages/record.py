@@ -13,7 +13,8 @@ from trundle._progress import Tell, silent
 from trundle.records.assess import RecordResult
 from trundle.report.figures import record
 from trundle.report.html import Picture, embedded, template
-from trundle.views.record import level_rows, record_rows, record_summary
+from trundle.study.report_plan import ReportPlan
+from trundle.views.record import level_rows, record_summary, shown_rows
 from trundle.views.record_answer import answers, light, lights
 from trundle.views.record_survey import (
     EVENT_HEADINGS,
@@ -24,14 +25,18 @@ from trundle.views.record_survey import (
     percentile_rows,
     psd_table,
     running_table,
+    shown_events,
 )
+from trundle.views.words import USUAL
 
 __all__ = ["record_page", "write_record_report"]
 
 _MOST_EVENTS = 200  # on the page; the file has all
 
 
-def write_record_report(result: RecordResult, folder: Path, *, tell: Tell = silent) -> Path:
+def write_record_report(
+    result: RecordResult, folder: Path, *, report: ReportPlan = USUAL, tell: Tell = silent
+) -> Path:
     """Write the page, its figures, ``summary.json`` and tables (CSV); return the page.
 
     Parameters
@@ -40,10 +45,12 @@ def write_record_report(result: RecordResult, folder: Path, *, tell: Tell = sile
         What is said of the record.
     folder : Path
         A folder without figures.
+    report : ReportPlan, optional
+        Has the units of page and figures; files for programs keep theirs, which they name.
     tell : callable, optional
         Told which figure is drawn, and the share drawn.
     """
-    pictures = embedded(list(record.drawings(result)), folder / "figures", tell=tell)
+    pictures = embedded(list(record.drawings(result, report)), folder / "figures", tell=tell)
     write_csv(folder / "levels.csv", *level_rows(result))
     write_csv(folder / "percentiles.csv", *csv_table(percentile_rows(result), PERCENTILE_HEADINGS))
     write_csv(folder / "events.csv", *csv_table(event_rows(result), EVENT_HEADINGS))
@@ -52,20 +59,23 @@ def write_record_report(result: RecordResult, folder: Path, *, tell: Tell = sile
     text = json.dumps(plain(record_summary(result)), indent=1, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     page = folder / "report.html"
-    page.write_text(record_page(result, pictures), encoding="utf-8")
+    page.write_text(record_page(result, pictures, report), encoding="utf-8")
     return page
 
 
-def record_page(result: RecordResult, pictures: Sequence[Picture]) -> str:
+def record_page(
+    result: RecordResult, pictures: Sequence[Picture], report: ReportPlan = USUAL
+) -> str:
     """Return the page of a record, with pictures as `embedded` gives them."""
-    events = event_rows(result)
+    events = shown_events(result, report)
     return template("record.html.j2").render(
         result=result,
         record=result.record,
         answers=answers(result),
         lights=lights(result),
         light=light,
-        rows=record_rows(result),
+        rows=shown_rows(result, report),
+        report=report,
         events=events[:_MOST_EVENTS],
         n_events=len(events),
         doses=dose_rows(result),

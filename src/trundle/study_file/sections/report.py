@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from trundle.errors import Problem
-from trundle.study.report_plan import ReportPlan
+from trundle.study.report_plan import AccelerationUnit, ReportPlan, VelocityUnit
 from trundle.study_file.draft import Draft
 from trundle.study_file.fields import Line, Section
 from trundle.study_file.kinds import SectionKind
@@ -20,6 +20,7 @@ __all__ = ["REPORT", "build", "fields"]
 _LARGEST_LOGO = 1_000_000  # bytes
 _PICTURES = {b"\x89PNG\r\n\x1a\n": "PNG", b"\xff\xd8\xff": "JPEG"}
 """How the pictures begin that every browser and printer shows."""
+_UNITS = {"acceleration", "velocity", "displacement", "load"}
 
 
 def _as_text(value: Any) -> Any:
@@ -45,9 +46,9 @@ class ReportSection(Section):
     """Who wrote it."""
     logo: Line = ""
     """Picture beside the study, PNG or JPEG, on the front."""
-    acceleration: Literal["gal", "m/s2", "mm/s2", "mg", "in/s2"] = "gal"
+    acceleration: AccelerationUnit = "gal"
     """Unit of acceleration in the report."""
-    velocity: Literal["um/s", "mm/s", "m/s", "mil/s", "in/s"] = "um/s"
+    velocity: VelocityUnit = "um/s"
     """Unit of velocity in the report."""
     displacement: Literal["um", "mm", "m", "mil", "in"] = "um"
     """Unit of displacement in the report."""
@@ -92,4 +93,7 @@ def _wrong(rule: str, remedy: str) -> Problem:
 def fields(draft: Draft) -> dict[str, Any]:
     """Return what a study takes from the section."""
     section = draft.file.tables.get("report")
-    return {"report": ReportPlan() if section is None else ReportPlan(**dict(section))}
+    if section is None:
+        return {"report": ReportPlan()}
+    chosen = frozenset(section.model_fields_set & _UNITS)
+    return {"report": ReportPlan(**dict(section), chosen=chosen)}

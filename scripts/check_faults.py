@@ -1,6 +1,6 @@
 """Put known faults into a copy of the code, one at a time, and see that the tests catch each.
 
-Usage: python scripts/check_faults.py [--list] [--only NAME] [--json FILE]
+Usage: python scripts/check_faults.py [--list] [--only NAME] [--json FILE] [--again FILE]
 
 The faults stand in faults.toml beside this script. Exit code 0 if every fault is caught, 1 if
 one survives, 2 if a fault is out of date or a run says nothing about it.
@@ -258,12 +258,25 @@ def write_json(outcomes: list[Outcome], file: Path) -> None:
     file.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
 
+def caught_before(file: Path, faults: tuple[Fault, ...]) -> list[Outcome]:
+    """Return the outcomes of faults that an earlier run has seen caught."""
+    names = {fault.name for fault in faults}
+    rows = [Outcome(**row) for row in json.loads(file.read_text("utf-8"))]
+    return [row for row in rows if row.caught and row.name in names]
+
+
 def main() -> int:
     """Read the command line, try the faults asked for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--list", action="store_true", help="name the faults and stop")
     parser.add_argument("--only", metavar="NAME", help="faults whose name holds this text")
     parser.add_argument("--json", metavar="FILE", type=Path, help="write the outcomes there")
+    parser.add_argument(
+        "--again",
+        metavar="FILE",
+        type=Path,
+        help="try those alone that FILE does not say are caught",
+    )
     asked = parser.parse_args()
     faults = read_faults()
     if asked.only:
@@ -273,7 +286,9 @@ def main() -> int:
     if asked.list:
         print(*(f"{fault.name}  ({fault.file})" for fault in faults), sep="\n")
         return 0
-    outcomes = try_all(faults)
+    before = caught_before(asked.again, faults) if asked.again else []
+    known = {outcome.name for outcome in before}
+    outcomes = before + try_all(tuple(fault for fault in faults if fault.name not in known))
     if asked.json:
         write_json(outcomes, asked.json)
     return summarise(outcomes)

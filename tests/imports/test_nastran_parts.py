@@ -75,11 +75,12 @@ def test_what_grids_leave_open_grdset_says(tmp_path):
 
 
 def test_a_grid_that_follows_by_rbe2(tmp_path):
-    """Half a metre beyond the tip: P (L^3/3 + L^2 a + L a^2) / E I, through a chain of two."""
+    """Half a metre beyond the tip: P (L^3/3 + L^2 a + L a^2) / E I, through a chain of three."""
     text = BAR + (
-        "GRID,3,,3.25,0.,0.\nGRID,4,,3.5,0.,0.\nRBE2,7,2,123456,3\nRBE2,8,3,123456,4,,1.-5\n"
-    ).replace(",,1.-5", "")
-    found = moved(model(tmp_path, text), 3, 2)
+        "GRID,3,,3.25,0.,0.\nGRID,4,,3.4,0.,0.\nGRID,5,,3.5,0.,0.\n"
+        "RBE2,7,2,123456,3\nRBE2,8,3,123456,4\nRBE2,9,4,123456,5\n"
+    )
+    found = moved(model(tmp_path, text), 4, 2)
     a = 0.5
     assert found == pytest.approx((L**3 / 3 + L**2 * a + L * a**2) / (E * I1), rel=1e-9)
 

@@ -283,15 +283,18 @@ def test_a_stranger_s_piece_is_not_unpickled(tmp_path):
     study = load_study(path)
     with pytest.raises(KeyboardInterrupt), unfinished_of(study, out) as disk:
         disk.save("a", FirstModes(frequencies=np.ones(1), vertical=np.zeros((1, 1))))
+        label = disk._label("a").encode() + b"\0"
         raise KeyboardInterrupt
     (file,) = (unfinished_folder(out) / "pieces").iterdir()
-    with np.load(io.BytesIO(file.read_bytes()[32:])) as arrays:
+    own = file.read_bytes()[32:]
+    assert file.read_bytes()[:32] == hashlib.sha256(label + own).digest()  # as it is summed up
+    with np.load(io.BytesIO(own)) as arrays:
         forged = dict(arrays)
     forged["value.frequencies"] = np.array([Payload(trace)], dtype=object)
     written = io.BytesIO()
     np.savez(written, **forged)
     data = written.getvalue()
-    file.write_bytes(hashlib.sha256(data).digest() + data)
+    file.write_bytes(hashlib.sha256(label + data).digest() + data)
     with unfinished_of(study, out) as disk:
         assert disk.n_found == 0
     assert not trace.exists()

@@ -43,7 +43,10 @@ def carried_out(
     lock = threading.Lock()
 
     def teller(name: str) -> Progress:
+        """Return what is told of one task."""
+
         def tell(share: float) -> None:
+            """Tell the mean over all tasks."""
             with lock:
                 shares[name] = share
                 progress(sum(shares.values()) / len(shares))
@@ -51,6 +54,7 @@ def carried_out(
         return tell
 
     def take(*, wait: bool) -> None:
+        """Take what has landed."""
         for name, left in executor.finished(wait=wait):
             found[name] = left
             teller(name)(1.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -11,7 +11,6 @@ from trundle.errors import Problem
 from trundle.road import RoughnessBand
 from trundle.route import entry_named
 from trundle.simulate import Coupled, Decoupled, Integration, Modal, Newmark
-from trundle.simulate.step_limits import longest_step, step_problem
 from trundle.structure import Hat, Hermite, ModalModel
 from trundle.structure.elements import Damped
 from trundle.study.plans import MethodPlan
@@ -31,6 +30,7 @@ from trundle.study_file.fields import (
     Wavenumber,
 )
 from trundle.study_file.kinds import SectionKind
+from trundle.study_file.method_checks import method_problems
 
 __all__ = ["METHOD", "build", "fields", "problems"]
 
@@ -98,9 +98,7 @@ def fields(draft: Draft) -> dict[str, Any]:
 
 def problems(draft: Draft) -> Iterator[Problem]:
     """Give steps and entries that do not suit a record, a vehicle or a route."""
-    yield from _time_steps(draft.file, draft.methods)
-    yield from _entries(draft)
-    yield from _vehicle_steps(draft)
+    yield from method_problems(draft)
     yield from unique((f"{place}.name", name) for place, name in draft.file.names("method"))
     yield from _without_damping(draft)
 
@@ -290,69 +288,3 @@ def _ratio_with_newmark(place: str) -> Problem:
         remedy='write { rayleigh_alpha = "0.8587 1/s", rayleigh_beta = "0.001 s" }, which is 3 % '
         'at 3.75 and 5.8 Hz, or integration = "modal"',
     )
-
-
-def _time_steps(file: StudyFile, methods: Mapping[str, MethodPlan]) -> Iterator[Problem]:
-    for i, section in file.lists.get("method", []):
-        plan = methods.get(section.name)
-        if plan is None:
-            continue
-        integration = plan.interaction.integration
-        duration = None if file.general is None else file.general.duration
-        if duration is not None and integration.dt > duration / 10.0:
-            yield Problem(
-                place=f"method[{i + 1}].dt",
-                value=f"{1e3 * integration.dt:g} ms",
-                rule=f"a record of {duration:g} s needs at least 10 steps",
-                remedy="shorten dt; 5 ms shows bands up to 80 Hz",
-            )
-
-
-def _entries(draft: Draft) -> Iterator[Problem]:
-    for name, drive in draft.drives.items():
-        for method in draft.methods.values():
-            place = draft.file.place_of(method.name, "method")
-            length = getattr(method.entry, "length", None)
-            if length is not None and length > 0.5 * drive.route.length:
-                yield Problem(
-                    place=f"{place}.entry_length",
-                    value=f"{length:g} m",
-                    rule=f"entry and exit must both fit on route {name!r} of "
-                    f"{drive.route.length:g} m",
-                    remedy=f"use at most {0.5 * drive.route.length:g} m",
-                )
-            if method.entry.lead(drive.vehicle.length) > drive.route.length:
-                yield Problem(
-                    place=f"{place}.entry",
-                    value="static",
-                    rule=f"the whole vehicle must stand on route {name!r}, "
-                    f"{drive.route.length:g} m long, at the start; it needs "
-                    f"{drive.vehicle.length:g} m",
-                    remedy='lengthen the route, or use entry = "drive_in"',
-                )
-
-
-def _vehicle_steps(draft: Draft) -> Iterator[Problem]:
-    """Give the vehicles whose own vibration is too fast for a method's steps."""
-    # two of one kind bear one name
-    vehicles = {id(drive.vehicle): drive.vehicle for drive in draft.drives.values()}
-    for method in draft.methods.values():
-        place = draft.file.place_of(method.name, "method")
-        integration = method.interaction.integration
-        for vehicle in vehicles.values() if integration.f_max is not None else ():
-            if not vehicle.is_linear:
-                yield Problem(
-                    place=f"{place}.integration",
-                    value="modal",
-                    rule=f"vehicle {vehicle.name!r} is not linear (friction, stops, or lifting "
-                    "off), and modal steps are of linear vehicles",
-                    remedy='integration = "newmark" steps it run by run; or leave these parts out',
-                )
-            if problem := step_problem(vehicle, integration.dt):
-                yield Problem(
-                    place=f"{place}.dt",
-                    value=f"{1e3 * integration.dt:g} ms",
-                    rule=problem.partition(": shorten")[0],
-                    remedy=f"shorten dt to {1e3 * longest_step(vehicle):.2g} ms, or see whether a "
-                    "stiffness or a mass has the wrong unit",
-                )

@@ -14,7 +14,7 @@ from trundle.report.figures.class_plan import fill_classes
 from trundle.report.figures.passing import draw_passing, passing_handles
 from trundle.results.cells import CellKey
 from trundle.results.maps import MapKey, StudyMap
-from trundle.views.map import map_views
+from trundle.views.map import map_payload, map_views
 from trundle.views.plan_lines import dimensions, plan_lines
 
 MAP = '\n[map]\nspacing = "3 m"\ncriterion = "VC-A"\n'
@@ -99,6 +99,34 @@ def test_the_plan_has_grid_dimensions_points_routes_and_the_worst_place():
     assert "main" in words
     assert "worst: (4.5, 4.5) m, 0.25 of VC-A" in words
     assert "95 % of" in drawing.caption
+
+
+@pytest.mark.parametrize("named", ["points", "routes", "map"])
+def test_the_only_surface_need_not_be_named_and_may_be(named):
+    """A point, a route or a map that names it lies on it as one that does not."""
+    result, _ = view_of(np.full(8, 2.0))
+    study, (on,) = result.study, result.study.floor.surfaces
+    if named == "points":
+        points = {name: replace(spot, on=on) for name, spot in study.points.items()}
+        study = replace(study, points=points)
+    elif named == "routes":
+        drives = {
+            name: replace(drive, route=replace(drive.route, on=on))
+            for name, drive in study.drives.items()
+        }
+        study = replace(study, drives=drives)
+    else:
+        (grid,) = study.map.grids
+        there = replace(grid, spots=replace(grid.spots, on=on))
+        study = replace(study, map=replace(study.map, grids=(there,)))
+    result = replace(result, study=study)
+    (drawing,) = class_plan.drawings(result)
+    with rc_context(STYLE):
+        (axes,) = drawing.draw().axes
+    assert {"tool", "main"} <= {text.get_text() for text in axes.texts}
+    told = map_payload(result)
+    assert [view["points"] for view in told["views"]] == [["tool"]]
+    assert [view["routes"] for view in told["views"]] == [["main"]]
 
 
 def test_dimensions_are_between_neighbours():

@@ -205,6 +205,10 @@ class Study:
         names = tuple(self.floor.surfaces)
         return names if len(names) > 1 else (None,)
 
+    def is_on(self, name: str | None, on: str | None) -> bool:
+        """Return whether two names mean one surface: the only one need not be named."""
+        return name == on or len(self.floor.surfaces) == 1
+
     def in_plan(self, xy: Float[Array, "n 2"], on: str | None) -> Float[Array, "n 2"]:
         """Return where in plan places of a surface are [m]."""
         return self.floor.surface(on).frame.to_plan(np.asarray(xy, dtype=float))

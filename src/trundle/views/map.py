@@ -183,7 +183,7 @@ def _view(result: StudyResult, view: MapView) -> dict[str, Any]:
         "points": [
             name
             for name, spot in study.points.items()
-            if (spot.on, spot.axis) == (view.grid.on, view.grid.axis)
+            if study.is_on(spot.on, view.grid.on) and spot.axis == view.grid.axis
         ],
         "ranks": [
             [None if np.isnan(r) else int(r) for r in row] for row in view.grid.filled(ranks)
@@ -287,9 +287,9 @@ def _on(result: StudyResult, routes: Sequence[str], on: str | None) -> list[str]
         name
         for name in routes
         if (
-            on in study.drives[name].route.visited
+            any(study.is_on(one, on) for one in study.drives[name].route.visited)
             if name in study.drives
-            else study.sources[name].on == on
+            else study.is_on(study.sources[name].on, on)
         )
     ]
 

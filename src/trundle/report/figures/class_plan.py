@@ -168,7 +168,7 @@ def _draw_grid(
 
 def _draw_points(axes: Axes, study: Study, grid: MapGrid) -> None:
     for name, spot in study.points.items():
-        if (spot.on, spot.axis) != (grid.on, grid.axis):
+        if not study.is_on(spot.on, grid.on) or spot.axis != grid.axis:
             continue
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         axes.plot(

@@ -252,14 +252,14 @@ def draw_image(
         _draw_nothing(panel, grid)
     for name in routes:
         drive = study.drives.get(name)
-        if drive is None or grid.on not in drive.route.visited:
+        if drive is None or not any(study.is_on(on, grid.on) for on in drive.route.visited):
             continue
         line = study.way_in_plan(drive.route, grid.on).T
         panel.plot(*line, color="white", linewidth=2.4)
         panel.plot(*line, color="black", linewidth=1.0, linestyle="--")
     draw_sources(panel, study, routes, on=grid.on)
     for spot in study.points.values():
-        if (spot.on, spot.axis) != (grid.on, grid.axis):
+        if not study.is_on(spot.on, grid.on) or spot.axis != grid.axis:
             continue
         place = study.in_plan(np.array([[spot.x, spot.y]]), spot.on)[0]
         panel.plot(*place, marker="X", markersize=6, color="black", markeredgecolor="white")

@@ -35,7 +35,7 @@ def draw_sources(
     """
     for i, name in enumerate(name for name in names if name in study.sources):
         source, colour = study.sources[name], COLOURS[(i + 2) % 6]
-        if source.on not in (on, None):
+        if not study.is_on(source.on, on):
             continue
         places = np.concatenate([place for place, _ in source.way()])
         xy = study.in_plan(places, source.on)

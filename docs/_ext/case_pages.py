@@ -53,22 +53,72 @@ class Row:
 
 
 def write_cases() -> None:
-    """Write the page."""
+    """Write a page for each source, and one that lists them."""
     rows = list(rows_of((DOCS / "validation.md").read_text("utf-8")))
-    parts = ["# Published cases\n", _WORDS.format(n=sum(map(_is_published, rows)))]
-    for mark, title in _PUBLISHED:
-        some = [row for row in rows if row.source.startswith(mark)]
-        parts += _one(title, some) if some else []
-    write_page(GENERATED / "cases.md", "\n".join(parts))
+    found = [
+        (_slug(mark), title, some)
+        for mark, title in _PUBLISHED
+        if (some := [row for row in rows if row.source.startswith(mark)])
+    ]
+    for slug, title, some in found:
+        write_page(GENERATED / "cases" / f"{slug}.md", "\n".join(_one(title, some)))
+    listed = table(
+        ("source", "values", "cases", "furthest"),
+        (
+            (f"[{title}](cases/{slug}.md)", str(len(some)), _cases(some), _furthest(some))
+            for slug, title, some in found
+        ),
+    )
+    words = _WORDS.format(n=sum(len(some) for _, _, some in found))
+    places = "\n".join(f"cases/{slug}" for slug, _, _ in found)
+    write_page(GENERATED / "cases.md", words + listed + _TREE.format(places=places))
 
+
+_TREE = """
+```{{toctree}}
+:hidden:
+
+{places}
+```
+"""
 
 _WORDS = """\
+# Published cases
+
 What others have printed, what standards define, or what other programs give, beside ours: {n} of the comparisons of
-[](../validation.md), from which these tables are taken as they stand. The others hold trundle against closed forms, against invariants, and against integrations made for the purpose. A
-difference is relative where it is in per cent, and in the unit of its row otherwise.
+[](../validation.md), from which these tables are taken as they stand, a page a source. The others hold trundle against closed forms, against invariants, and against integrations made for the purpose. A
+difference is relative where it is in per cent, and in the unit of its row otherwise; *furthest* is the one that takes most of its tolerance.
 
 The paper that the project began with, T.-C. Pan, A. Mita and J. Li (2001), has a page of its own with its Tables 2 and 3 beside ours: [](paper.md).
 """
+
+
+def _slug(mark: str) -> str:
+    """Return the name of a source's page."""
+    return re.sub(r"[^a-z0-9]+", "_", mark.lower()).strip("_")
+
+
+def _cases(rows: list[Row]) -> str:
+    return ", ".join(dict.fromkeys(row.case for row in rows))
+
+
+def _furthest(rows: list[Row]) -> str:
+    """Return the difference that takes the largest share of its tolerance."""
+
+    def share(row: Row) -> float:
+        """Return it as a number."""
+        error, tolerance = (
+            float(text.split()[0].rstrip("%")) for text in (row.error, row.tolerance)
+        )
+        return abs(error) / tolerance if tolerance else 0.0
+
+    row = max(rows, key=share)
+    return f"{_barred(row.quantity)}: {row.error} of {row.tolerance}"
+
+
+def _barred(text: str) -> str:
+    """Return text whose bars stay in their cell."""
+    return re.sub(r"(?<!\\)\|", r"\\|", text)
 
 
 def rows_of(page: str) -> Iterator[Row]:
@@ -81,18 +131,15 @@ def rows_of(page: str) -> Iterator[Row]:
                 yield Row(case=case, **dict(zip(names, cells, strict=True)))
 
 
-def _is_published(row: Row) -> bool:
-    return any(row.source.startswith(mark) for mark, _ in _PUBLISHED)
-
-
 def _one(title: str, rows: list[Row]) -> Iterator[str]:
-    yield f"\n## {title}\n"
+    yield f"# {title}\n"
     cases = dict.fromkeys(row.case for row in rows)
     commands = ", ".join(code(f"make validate ONLY={_asked(case)}") for case in cases)
-    yield f"{len(rows)} values; {commands} computes them again."
+    again = f"{commands} computes {'it' if len(rows) == 1 else 'them'} again"
+    yield f"{len(rows)} value{'' if len(rows) == 1 else 's'}, theirs beside ours; {again}. All cases: [](../cases.md).\n"
     yield table(
         ("quantity", "theirs", "ours", "unit", "difference", "tolerance"),
-        ((r.quantity, r.expected, r.computed, r.unit, r.error, r.tolerance) for r in rows),
+        ((_barred(r.quantity), r.expected, r.computed, r.unit, r.error, r.tolerance) for r in rows),
         kind="numbers",
     )
 

@@ -113,8 +113,8 @@ def section(case: str, record: dict) -> list[str]:
     ]
     for row in condensed(rows):
         cells = (
-            row["quantity"].replace("|", "\\|"), f"{row['expected']:.6g}", f"{round_off(row):.6g}", row["unit"],
-            shown_error(row), shown_limit(row), row["source"],
+            row["quantity"].replace("|", "\\|"), f"{row['expected']:.6g}",
+            f"{round_off(row):.6g}", row["unit"], shown_error(row), shown_limit(row), row["source"],
         )  # fmt: skip
         mark = "" if is_met(row) else " **not met**"
         lines.append(f"| {' | '.join(cells)}{mark} |")

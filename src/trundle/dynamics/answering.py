@@ -46,9 +46,10 @@ AnswerAll: TypeAlias = Callable[[Enquiry, Sequence[complex]], Iterator[Array]]
 """Gives the answers of an enquiry at some shifts, in their order."""
 
 _COARSE = 8.0  # first spacing of frequencies, against the damping ratio: four resonances wide
-_FINEST = 0.5  # spacing at which the search is given up
+_FINEST = 0.2  # spacing at which the search is given up
 _LEAST_RATIO = 0.002  # of the ratio, for the spacing
 _SHARE = 0.05  # of the tolerance, below which a new direction is left out
+_SHARE_MAPPED = 0.001  # the same with maps: nothing is solved from their end, and they may be far
 _FLOOR = 0.01  # of the loudest answer: what is 40 dB below it need not be known as well
 _STEPS = 6  # of the iteration that finds where the spectrum begins
 
@@ -129,6 +130,7 @@ def answering_modes(
     )
     span, told = _Span(n_coordinates=pencil.mass.shape[0]), progress or _nobody
     lines, known, error = search.first(), np.zeros(0), 0.0
+    share = _SHARE_MAPPED if questions.mapped.shape[0] else _SHARE
     loudest = np.zeros((2, enquiry.probed.shape[1]))
     while len(lines):
         basis = span.diagonal(pencil) if len(known) else None
@@ -136,7 +138,7 @@ def answering_modes(
         shifts = [search.shift(omega) for omega in lines]
         for i, found in enumerate(answer_all(enquiry, shifts)):
             off[i], sizes[i] = lines[i] * _difference(enquiry, basis, shifts[i], found)
-            span.take(enquiry, found, _SHARE * tolerance)
+            span.take(enquiry, found, share * tolerance)
             told(1.0 - 0.5 ** (len(known) / 16.0) * (1.0 - 0.5 * (i + 1) / len(lines)))
         loudest = np.maximum(loudest, sizes.max(axis=0))
         errors = _largest(off, np.maximum(sizes, _FLOOR * loudest))
@@ -268,9 +270,11 @@ def _difference(
         # statics are known: modes left out follow without delay
         dynamic = 1.0 / (omega**2 - shift) - 1.0 / omega**2
         told = enquiry.at_rest + seen @ (dynamic[:, None] * probed.T)
-    return np.array(
+    both = np.array(
         [[np.linalg.norm(x[rows], axis=0) for rows in enquiry.groups] for x in (told - true, true)]
     )
+    both[:, 1, : enquiry.questions.read.shape[0]] = 0.0  # from points to maps nothing leads
+    return both
 
 
 def _largest(off: Array, sizes: Array) -> Array:

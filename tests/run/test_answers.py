@@ -63,7 +63,7 @@ def test_answers_have_the_same_bits_whoever_solves(monkeypatch):
     assert found[0] == found[1] == found[2]
 
 
-@pytest.mark.slow
+@pytest.mark.longest
 def test_answers_have_the_same_bits_by_workers():
     study = tr.study_from_text(ASSESSED + ANSWERING)
     jobs = plan_jobs(study)

@@ -17,7 +17,7 @@ from trundle.dynamics.exact import ExactRecursion, ModalRecursion
 from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
 from trundle.dynamics.kept_parts import is_reduction_of, part_as_arrays, part_from_arrays
 from trundle.dynamics.lanczos import Interval
-from trundle.dynamics.modes import Basis, Modes
+from trundle.dynamics.modes import Basis, Modes, unit_rows
 from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
 from trundle.dynamics.pencil import (
     DampedPencil,
@@ -109,4 +109,5 @@ __all__ = [
     "restoring_filter",
     "shift_near",
     "together",
+    "unit_rows",
 ]

@@ -12,8 +12,8 @@ diagonalised, so that whatever steps modes steps these.
 
 Where more frequencies are needed is seen from the answers themselves. Each new one is first told by
 what is there already: as far as it is off, so is whatever lies between. Where it is more than
-is allowed the gaps beside it are halved, and so on. What is told of the error comes from the last
-frequencies at which somebody looked, before they were taken in.
+is allowed the gaps beside it are halved, and so on. What is told of the error is the largest among
+those within the tolerance, as it was before they were taken in.
 
 References
 ----------
@@ -36,7 +36,7 @@ from trundle._typing import Array
 from trundle.dynamics.enquiry import Enquiry, Questions
 from trundle.dynamics.krylov import BLOCK, Krylov
 from trundle.dynamics.modes import Modes
-from trundle.dynamics.pencil import DampedPencil, Product
+from trundle.dynamics.pencil import DampedPencil, Product, shift_near
 from trundle.dynamics.sparse_solver import Factor
 from trundle.errors import ConvergenceError
 
@@ -51,6 +51,7 @@ _LEAST_RATIO = 0.002  # of the ratio, for the spacing
 _SHARE = 0.05  # of the tolerance, below which a new direction is left out
 _SHARE_MAPPED = 0.001  # the same with maps: nothing is solved from their end, and they may be far
 _FLOOR = 0.01  # of the loudest answer: what is 40 dB below it need not be known as well
+_HALFWAY = 20.0  # frequencies after which half of the work is done, as progress is told
 _STEPS = 6  # of the iteration that finds where the spectrum begins
 
 
@@ -63,11 +64,10 @@ class AnsweringModes:
     modes : Modes
         The combinations: M-orthonormal, and K-orthogonal to each other.
     error : float
-        Largest error of a velocity, as it was before the frequency was taken in at which it was
-        within the tolerance,
-        between the routes and any reading, of the routes' own motion and of maps: RMS over the
-        route or the map of the difference, over that of the answer, or over a hundredth of the
-        answer where it is loudest.
+        Largest error of a velocity at the frequencies that were within the tolerance, as it was
+        before these were taken in: between the routes and any reading, of the routes' own motion
+        and of maps. RMS over the route or the map of the difference, over that of the answer, or
+        over a hundredth of the answer where it is loudest.
     n_frequencies : int
         At how many frequencies the structure was solved.
     n_below : int
@@ -121,10 +121,11 @@ def answering_modes(
         Frequencies come closer to each other than a resonance is wide, and it is not within the
         tolerance yet.
     """
-    limit = (2.0 * np.pi * f_max) ** 2
-    n_below = pencil.factorise(limit).n_negative
+    high = 2.0 * np.pi * f_max
+    n_below = shift_near(pencil, high).below
     rest = pencil.factorise(0.0)
-    search = _Search(ratios=ratios, low=0.5 * _first_omega(pencil, rest), high=np.sqrt(limit))
+    low = 0.5 * min(_first_omega(pencil, rest), high)
+    search = _Search(ratios=ratios, low=low, high=high)
     enquiry = Enquiry.of(
         pencil, questions, rest, highest=search.shift(search.high), tolerance=tolerance
     )
@@ -139,7 +140,7 @@ def answering_modes(
         for i, found in enumerate(answer_all(enquiry, shifts)):
             off[i], sizes[i] = lines[i] * _difference(enquiry, basis, shifts[i], found)
             span.take(enquiry, found, share * tolerance)
-            told(1.0 - 0.5 ** (len(known) / 16.0) * (1.0 - 0.5 * (i + 1) / len(lines)))
+            told(1.0 - 0.5 ** ((len(known) + i + 1) / _HALFWAY))
         loudest = np.maximum(loudest, sizes.max(axis=0))
         errors = _largest(off, np.maximum(sizes, _FLOOR * loudest))
         known = np.sort(np.concatenate([known, lines]))
@@ -148,12 +149,7 @@ def answering_modes(
         lines = search.next(known, lines if basis is None else lines[~passed])
     omega, shapes = span.diagonal(pencil)
     modes = Modes(omega=omega, shapes=shapes, residuals=np.full(len(omega), error), f_max=f_max)
-    return AnsweringModes(
-        modes=modes,
-        error=error,
-        n_frequencies=len(known),
-        n_below=n_below,
-    )
+    return AnsweringModes(modes=modes, error=error, n_frequencies=len(known), n_below=n_below)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -230,6 +226,8 @@ class _Span:
         """Append the directions of a block that are larger than the least square."""
         squares, turned = linalg.eigh(block.T @ loaded)
         kept = squares > least
+        if not kept.any():
+            return
         new = block @ (turned[:, kept] / np.sqrt(squares[kept]))
         heavy = mass @ new
         for _ in range(2):  # small directions bring back what was taken off

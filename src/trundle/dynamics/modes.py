@@ -11,9 +11,15 @@ from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
 
-__all__ = ["Basis", "Modes"]
+__all__ = ["Basis", "Modes", "unit_rows"]
 
 _AT_ONCE = 64  # modes whose energies are formed together
+
+
+def unit_rows(dofs: Int[Array, " some"], n_dofs: int) -> SparseMatrix:
+    """Return rows of weights (n, n_dofs) that each see one dof."""
+    entries = (np.ones(len(dofs)), (np.arange(len(dofs)), dofs))
+    return sparse.csr_array(entries, shape=(len(dofs), n_dofs))
 
 
 @runtime_checkable
@@ -94,9 +100,7 @@ class Modes:
         """Return the shapes at some dofs."""
         if self.basis is None:
             return self.shapes[dofs]
-        entries = (np.ones(len(dofs)), (np.arange(len(dofs)), dofs))
-        unit = sparse.csr_array(entries, shape=(len(dofs), self.basis.n_dofs))
-        return self.basis.seen(unit, self.shapes)
+        return self.basis.seen(unit_rows(dofs, self.basis.n_dofs), self.shapes)
 
     def energies(self, matrix: SparseMatrix) -> Float[Array, " modes"]:
         """Return ``phi.T @ K @ phi`` of each mode: twice its energy in a stiffness [1/s2]."""

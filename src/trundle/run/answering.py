@@ -8,17 +8,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
-from typing_extensions import TypeIs
 
 from trundle._progress import Progress
 from trundle._typing import Array
 from trundle.dynamics import ByMaterial, Enquiry, Modes, repeatable
-from trundle.run.carried import carried_out
 from trundle.run.executor import Executor
 from trundle.run.jobs import Job
+from trundle.run.loose_tasks import compute_loose
 from trundle.run.seen import map_rows, seen_by_jobs
 from trundle.structure import Structure
 from trundle.structure.elements import Damped
@@ -54,7 +53,7 @@ class AnswerTask:
         return shared.at(self.shift)
 
 
-def asks_for_answers(structure: Structure) -> TypeIs[PartedStructure]:
+def asks_for_answers(structure: Structure) -> TypeGuard[PartedStructure]:
     """Return whether combinations that answer are wanted in place of all modes."""
     return isinstance(structure, PartedStructure) and structure.parting.response_tolerance > 0.0
 
@@ -100,7 +99,7 @@ def answers_to_jobs(
                 AnswerTask(name=f"answers {start + i}", shift=shift)
                 for i, shift in enumerate(shifts[start : start + at_once])
             ]
-            found = carried_out([(task, enquiry) for task in tasks], executor, _nobody)
+            found = compute_loose([(task, enquiry) for task in tasks], executor, _nobody)
             for task in tasks:
                 yield found.pop(task.name)
 

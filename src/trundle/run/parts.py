@@ -25,10 +25,10 @@ from trundle.dynamics import (
     repeatable,
     together,
 )
-from trundle.run.carried import carried_out
 from trundle.run.executor import Executor
 from trundle.run.jobs import Job
 from trundle.run.kept_parts import keep_part, kept_part
+from trundle.run.loose_tasks import compute_loose
 from trundle.run.seen import map_rows, seen_by_jobs
 from trundle.structure import Structure
 from trundle.structure.superelements import PartedStructure, Sorted, reduced_here
@@ -157,7 +157,7 @@ def modes_by_parts(
         IntervalTask(name=f"modes {part.first + 1} to {part.end} of {count}", interval=part)
         for part in parts
     ]
-    found = carried_out(
+    found = compute_loose(
         [(task, pencil) for task in tasks],
         executor,
         lambda share: told(_COUNTED + (1.0 - _COUNTED) * share),
@@ -187,7 +187,7 @@ def _reduced(
     ]
     label = f"{len(missing)} of {len(parts)} distinct parts"
     by_name = dict(zip(names, parts, strict=True))
-    found = carried_out(
+    found = compute_loose(
         missing,
         executor,
         lambda share: tell(label, share),

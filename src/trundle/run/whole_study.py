@@ -187,22 +187,20 @@ def _all_modes(
     )
     if f_max == 0.0:
         return None
+    what = "answers" if asks_for_answers(floor) else "modes"
+    label = f"{what} of the floor below {f_max:g} Hz"
+
+    def progress(share: float) -> None:
+        """Tell it by its label."""
+        tell(label, share)
+
+    progress(0.0)
     if asks_for_answers(floor):
-        label = f"answers of the building below {f_max:g} Hz"
-        tell(label, 0.0)
-        return answers_to_jobs(
-            floor,
-            [job for job in jobs if job.modal],
-            f_max=f_max,
-            executor=who,
-            progress=lambda share: tell(label, share),
-        )
-    label = f"modes of the floor below {f_max:g} Hz"
-    tell(label, 0.0)
-    with repeatable():
-        modes = modes_of(
-            floor, f_max=f_max, progress=lambda share: tell(label, share), executor=who
-        )
+        modal = [job for job in jobs if job.modal]
+        modes = answers_to_jobs(floor, modal, f_max=f_max, progress=progress, executor=who)
+    else:
+        with repeatable():
+            modes = modes_of(floor, f_max=f_max, progress=progress, executor=who)
     _check_first_mode(study, modes)
     return modes
 

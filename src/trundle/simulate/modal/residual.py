@@ -20,10 +20,9 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
-from scipy import sparse
 
 from trundle._typing import Array, SparseMatrix
-from trundle.dynamics import Factor, Modes
+from trundle.dynamics import Factor, Modes, unit_rows
 from trundle.errors import InputError
 from trundle.structure import Structure
 
@@ -44,12 +43,6 @@ class Selective(Protocol):
     def between(self, rows: SparseMatrix, columns: SparseMatrix) -> Float[Array, "rows columns"]:
         """Return ``rows K^-1 columns^T`` for rows of weights over all dofs."""
         ...
-
-
-def _unit_rows(dofs: Array, n_dofs: int) -> SparseMatrix:
-    """Return rows of weights that each see one dof."""
-    entries = (np.ones(len(dofs)), (np.arange(len(dofs)), dofs))
-    return sparse.csr_array(entries, shape=(len(dofs), n_dofs))
 
 
 def unit_loads(
@@ -98,7 +91,7 @@ class StaticFlexibility:
     def _between(self, rows: Array, columns: Array) -> Array:
         if self.known and isinstance(self._factor, Selective):
             n = self._floor.n_dofs
-            return self._factor.between(_unit_rows(rows, n), _unit_rows(columns, n))
+            return self._factor.between(unit_rows(rows, n), unit_rows(columns, n))
         out = np.empty((len(rows), len(columns)))
         for part, unit in unit_loads(columns, self._floor.n_dofs):
             out[:, part] = self.solve(unit)[rows]
@@ -114,7 +107,7 @@ class StaticFlexibility:
     def seen(self, points: SparseMatrix, dofs: Int[Array, " dofs"]) -> Float[Array, "points dofs"]:
         """Return how far points move under unit forces at some dofs [m/N]."""
         if self.known and isinstance(self._factor, Selective):
-            return self._factor.between(points, _unit_rows(dofs, self._floor.n_dofs))
+            return self._factor.between(points, unit_rows(dofs, self._floor.n_dofs))
         return self.solve(np.ascontiguousarray(points.T.toarray())).T[:, dofs]
 
     def solve(self, load: Float[Array, "all columns"]) -> Float[Array, "all columns"]:

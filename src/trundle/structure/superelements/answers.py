@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
 from jaxtyping import Float, Int
 from scipy import sparse
 
@@ -18,6 +17,7 @@ from trundle.dynamics import (
     Questions,
     answer_here,
     answering_modes,
+    unit_rows,
 )
 from trundle.structure.superelements.whole import PartedStructure
 
@@ -41,12 +41,10 @@ def questions_of(
     read, mapped : sparse array, shape (n, n_dofs)
         Rows of weights that read points, and places of maps.
     """
-    entries = (np.ones(len(dofs)), (np.arange(len(dofs)), dofs))
-    unit = sparse.csr_array(entries, shape=(len(dofs), structure.n_dofs))
     nothing = sparse.csr_array((0, structure.n_dofs))
     joined = structure.joined
     return Questions(
-        pushed=joined.by_coordinates(unit),
+        pushed=joined.by_coordinates(unit_rows(dofs, structure.n_dofs)),
         read=joined.by_coordinates(read),
         mapped=joined.by_coordinates(nothing if mapped is None else mapped),
     )

@@ -11,10 +11,10 @@ from trundle.dynamics import repeatable
 from trundle.run.executor import Executor, Work
 from trundle.run.threads import Threads
 
-__all__ = ["carried_out"]
+__all__ = ["compute_loose"]
 
 
-def carried_out(
+def compute_loose(
     tasks: Sequence[tuple[Work, Any]],
     executor: Executor | None,
     progress: Progress,
@@ -37,7 +37,7 @@ def carried_out(
         return {}
     if executor is None:
         with Threads() as own:
-            return carried_out(tasks, own, progress, landed)
+            return compute_loose(tasks, own, progress, landed)
     found: dict[str, Any] = {}
     shares = dict.fromkeys((task.name for task, _ in tasks), 0.0)
     lock = threading.Lock()

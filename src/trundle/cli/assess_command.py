@@ -69,15 +69,7 @@ def assess(
     limit = quantity_of("--high-pass", high_pass, "frequency")
     if not np.isfinite(events):
         raise InputError(f"--events {events:g}: must be a number of passages, such as 16")
-    if out is not None and len(files) > 1:
-        raise InputError("--out names the folder of one record; leave it out for several")
-    places = [out or Path(f"{file.stem}-results") for file in files]
-    if len(set(places)) < len(places):
-        raise InputError("two records would have one results folder; assess them apart with --out")
-    for place in places:
-        check_target(place, "record")
-    if simulation is not None and simulation.resolve() in {place.resolve() for place in places}:
-        raise InputError(f"--simulation {simulation} would be replaced; choose another --out")
+    places = _places(files, out, simulation)
     simulated = (
         () if simulation is None else read_simulated(simulation, point=point, averaging=rule)
     )
@@ -101,6 +93,20 @@ def assess(
     if show == "json":
         say_json(said)
     return unmet
+
+
+def _places(files: list[Path], out: Path | None, simulation: Path | None) -> list[Path]:
+    """Return the results folder of each record; refuse what would be overwritten."""
+    if out is not None and len(files) > 1:
+        raise InputError("--out names the folder of one record; leave it out for several")
+    places = [out or Path(f"{file.stem}-results") for file in files]
+    if len(set(places)) < len(places):
+        raise InputError("two records would have one results folder; assess them apart with --out")
+    for place in places:
+        check_target(place, "record")
+    if simulation is not None and simulation.resolve() in {place.resolve() for place in places}:
+        raise InputError(f"--simulation {simulation} would be replaced; choose another --out")
+    return places
 
 
 def _check_words(*given: tuple[str, str, Sequence[str]]) -> None:

@@ -70,6 +70,8 @@ def test_without_modes_or_levels_nothing_is_claimed_of_them():
     (warning,) = mesh_warnings(change)
     assert warning.message.startswith("levels have not settled: from elements of 1 m to 0.5 m")
     assert "below 1.3 is relied on" in warning.message
+    assert "0.5 m band levels change by up to 30 %" in warning.message
+    assert "frequencies" not in warning.message
 
 
 def test_a_change_that_was_not_looked_at_is_a_doubt_and_no_settled_mesh():

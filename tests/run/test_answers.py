@@ -46,6 +46,7 @@ def test_results_say_what_stands_for_the_modes(both):
     (told,) = [doubt.message for doubt in cell.warnings if doubt.subject == "answers"]
     n_modes = both[0].modes.n_modes
     assert f"in place of the {n_modes} modes below" in told
+    assert told.endswith("without response_tolerance")  # so few modes cost less
     assert both[1].modes is None
     assert not [doubt for doubt in both[0].cells[cell.key].warnings if doubt.subject == "answers"]
 

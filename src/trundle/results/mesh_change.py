@@ -62,14 +62,16 @@ def mesh_words(change: MeshChange) -> str:
     """Say what the coarser mesh changes, and what is left."""
     coarse, fine = change.sizes
     levels = change.level_changes()
-    text = (
-        f"from elements of {coarse:g} m to {fine:g} m the first {change.frequencies.shape[1]} "
-        f"frequencies change by up to {100.0 * change.frequency_change:.2g} %"
-    )
+    n = change.frequencies.shape[1]
     worst = worst_words(levels, change.cases, change.points, change.bands)
-    nothing = "; no band level is known on both, so that none was compared"
-    text += f", and {worst}" if worst else nothing
-    return f"{text}; as much again may be left"
+    text = f"from elements of {coarse:g} m to {fine:g} m "
+    if n:
+        most = 100.0 * change.frequency_change
+        text += f"the first {n} frequencies change by up to {most:.2g} %, and "
+    else:  # none was looked for
+        worst = worst.replace(" by", " change by", 1)
+    nothing = "no band level is known on both, so that none was compared"
+    return f"{text}{worst or nothing}; as much again may be left"
 
 
 def mesh_warnings(change: MeshChange | None) -> tuple[FitnessWarning, ...]:

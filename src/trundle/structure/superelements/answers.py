@@ -23,6 +23,8 @@ from trundle.structure.superelements.whole import PartedStructure
 
 __all__ = ["answering_by_parts", "questions_of"]
 
+_TOO_MANY = "; these are more than the modes: all modes cost less, without response_tolerance"
+
 
 def questions_of(
     structure: PartedStructure,
@@ -107,4 +109,5 @@ def _told(found: AnsweringModes) -> str:
         f"combinations of motions answer between routes, points and maps, found at "
         f"{found.n_frequencies} frequencies: where they were tried, before these were taken in, "
         f"they were off by {100.0 * found.error:.2g} % at most"
+        + (_TOO_MANY if modes.n_modes > found.n_below else "")
     )

@@ -2,10 +2,11 @@
 
 from trundle.structure.superelements.answers import answering_by_parts, questions_of
 from trundle.structure.superelements.assembly import Joined
-from trundle.structure.superelements.cuts import Cuts
+from trundle.structure.superelements.cuts import Cuts, middles_of
 from trundle.structure.superelements.evidence import PartEvidence
 from trundle.structure.superelements.pencil import ReducedPencil
 from trundle.structure.superelements.reduction import Part, Sorted, reduced_here
+from trundle.structure.superelements.regions import Region
 from trundle.structure.superelements.whole import PartedStructure, Parting
 
 __all__ = [
@@ -16,8 +17,10 @@ __all__ = [
     "PartedStructure",
     "Parting",
     "ReducedPencil",
+    "Region",
     "Sorted",
     "answering_by_parts",
+    "middles_of",
     "questions_of",
     "reduced_here",
 ]

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -17,37 +18,49 @@ from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.elements.protocol import GROUND, Elements
+from trundle.structure.superelements.regions import Region, shares_by_region
 
-__all__ = ["Cuts", "Share", "shares_in_halves", "shares_of"]
+__all__ = ["Cuts", "Share", "middles_of", "shares_in_halves", "shares_of"]
 
 _ON_PLANE = 1e-3  # m, within which an element lies in a plane of the cut
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cuts:
-    """Hold the planes by which a structure is cut, across x, y and z [m].
+    """Hold the planes by which a structure is cut, across x, y and z [m], and parts that are given.
 
     Attributes
     ----------
     x, y, z : ndarray of float
         Where they lie, rising; none, unless given.
+    regions : tuple of Region
+        Parts that are given by their outlines: no plane cuts them.
+
+    Raises
+    ------
+    InputError
+        Planes that do not rise, or parts that overlap.
     """
 
     x: Float[Array, " across_x"] = field(default_factory=lambda: np.zeros(0))
     y: Float[Array, " across_y"] = field(default_factory=lambda: np.zeros(0))
     z: Float[Array, " across_z"] = field(default_factory=lambda: np.zeros(0))
+    regions: tuple[Region, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check that they rise."""
+        """Check that planes rise and parts lie beside each other."""
         for name in "xyz":
             values = frozen_array(name, getattr(self, name), shape=(None,))
             if np.any(np.diff(values) <= 0.0):
                 raise InputError(f"cuts across {name} must rise; got {values.tolist()}")
             set_frozen(self, **{name: values})
+        for one, other in combinations(self.regions, 2):
+            if one.overlaps(other):
+                raise InputError(f"parts {one.name!r} and {other.name!r} overlap")
 
     def __len__(self) -> int:
         """Return how many there are."""
-        return len(self.x) + len(self.y) + len(self.z)
+        return len(self.x) + len(self.y) + len(self.z) + len(self.regions)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -70,10 +83,16 @@ class Share:
 def shares_of(
     groups: Sequence[Elements], nodes: Float[Array, "nodes 3"], cuts: Cuts
 ) -> tuple[Share, ...]:
-    """Return the shares of every group's elements in the pieces between planes.
+    """Return the shares of every group's elements in the pieces between planes, and in given ones.
 
-    Pieces are numbered from 0 without gaps, z changing fastest. Planes outside are passed over. An
-    element in a plane belongs to no piece in which nothing carries it, if another one does.
+    Pieces are numbered from 0 without gaps, z changing fastest, given ones last. Planes outside are
+    passed over. An element in a plane belongs to no piece in which nothing carries it, if another
+    one does.
+
+    Raises
+    ------
+    InputError
+        A given part in which no element lies.
     """
     ends = nodes.min(axis=0) + _ON_PLANE, nodes.max(axis=0) - _ON_PLANE
     planes = [
@@ -81,6 +100,10 @@ def shares_of(
         for at, low, high in zip((cuts.x, cuts.y, cuts.z), *ends, strict=True)
     ]
     found = [_in_cells(nodes, group.connectivity, planes) for group in groups]
+    if cuts.regions:
+        first = int(np.prod([len(at) + 1 for at in planes]))
+        ends_of = [group.connectivity for group in groups]
+        found = _with_regions(found, nodes, ends_of, cuts.regions, first)
     found = _carried(found, [group.connectivity for group in groups], len(nodes))
     used = np.unique(np.concatenate([share.piece for share in found]))
     return tuple(
@@ -116,6 +139,34 @@ def _in_cells(nodes: Array, connectivity: Array, planes: Sequence[Array]) -> Sha
         weight = np.concatenate([weight, weight[shared]])
         cell = np.concatenate([cell, cell[shared] + 1])
     return Share(element=element, piece=cell, weight=weight)
+
+
+def _with_regions(
+    shares: list[Share],
+    nodes: Array,
+    ends: Sequence[Array],
+    regions: Sequence[Region],
+    first: int,
+) -> list[Share]:
+    """Return shares with those of given parts in front of what lies between planes."""
+    by_region = [shares_by_region(nodes, some, regions) for some in ends]
+    held = np.sum([some[:, :-1].sum(axis=0) for some in by_region], axis=0)
+    if np.any(held == 0.0):
+        name = regions[int(np.argmin(held))].name
+        raise InputError(f"in part {name!r} nothing of the structure lies")
+    found = []
+    for share, some in zip(shares, by_region, strict=True):
+        left = share.weight * some[share.element, -1]
+        kept = left > 0.0
+        element, region = np.nonzero(some[:, :-1])
+        found.append(
+            Share(
+                element=np.concatenate([share.element[kept], element]),
+                piece=np.concatenate([share.piece[kept], first + region]),
+                weight=np.concatenate([left[kept], some[element, region]]),
+            )
+        )
+    return found
 
 
 def _carried(shares: list[Share], ends: Sequence[Array], n_nodes: int) -> list[Share]:
@@ -193,7 +244,7 @@ def shares_in_halves(
     largest : int
         Number of nodes that a piece may have, about.
     """
-    middles = [_middles(nodes, group.connectivity) for group in groups]
+    middles = [middles_of(nodes, group.connectivity) for group in groups]
     everywhere = np.concatenate(middles)
     label = np.zeros(len(everywhere), dtype=np.intp)
     parts, next_label = [np.arange(len(everywhere))], 1
@@ -217,7 +268,7 @@ def shares_in_halves(
     )
 
 
-def _middles(nodes: Array, connectivity: Array) -> Array:
-    """Return the middle of each element's nodes."""
+def middles_of(nodes: Array, connectivity: Array) -> Array:
+    """Return the middle of each element's nodes [m], shape (n_elements, 3)."""
     there = (connectivity != GROUND)[..., None]
     return np.where(there, nodes[connectivity], 0.0).sum(axis=1) / there.sum(axis=1)

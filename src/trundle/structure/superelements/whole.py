@@ -203,6 +203,8 @@ class PartedStructure:
         digest.update(repr((parting.largest, parting.f_parts, parting.f_seams)).encode())
         for at in (parting.cuts.x, parting.cuts.y, parting.cuts.z):
             digest.update(at.tobytes() + b"|")
+        for one in parting.cuts.regions:
+            digest.update(repr((one.outline.tolist(), one.low, one.high)).encode())
         if self.nearness is not None:
             digest.update(repr(self.nearness.near).encode() + self.nearness.places.tobytes())
         return digest.hexdigest()[:16]

@@ -71,7 +71,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     maker = Maker(section, {}, {})
     meshing = _meshing(draft, section, building, maker)
     found += maker.problems
-    most = _MAX_NODES * (_BY_PARTS if "parts" in draft.file.given else 1)
+    most = _MAX_NODES * (_BY_PARTS if draft.file.given & {"parts", "part"} else 1)
     found += _too_fine(building, meshing, most)
     if found:
         return draft, found

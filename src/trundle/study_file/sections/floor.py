@@ -163,7 +163,7 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
         else lambda: floor_plan_of(section),
     )
     if plan is not None:
-        most = _MAX_NODES * (_BY_PARTS if "parts" in draft.file.given else 1)
+        most = _MAX_NODES * (_BY_PARTS if draft.file.given & {"parts", "part"} else 1)
         found += _mesh_problems(plan, section.mesh_size, most)
     return replace(draft, plan=plan, mesh_size=float(section.mesh_size)), found
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
 from typing import Annotated, Any
@@ -13,7 +13,7 @@ from pydantic import Field
 from trundle._typing import Array
 from trundle.errors import Problem
 from trundle.structure.floor import Floor
-from trundle.structure.superelements import Cuts, Parting
+from trundle.structure.superelements import Cuts, Parting, Region, middles_of
 from trundle.study_file.draft import Draft
 from trundle.study_file.fields import (
     Flag,
@@ -25,6 +25,7 @@ from trundle.study_file.fields import (
     Whole,
 )
 from trundle.study_file.kinds import SectionKind
+from trundle.study_file.sections.part import regions_of
 
 __all__ = ["PARTS", "build", "fields"]
 
@@ -59,17 +60,18 @@ PARTS = SectionKind(name="parts", schema=PartsSection, form="table")
 
 def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     """Return the draft with its structure cut into parts."""
-    section = draft.file.tables.get("parts")
-    if section is None:
+    if not draft.file.given & {"parts", "part"} or _unsound(draft):
         return draft, []
-    found = list(_problems(draft, section))
+    section = draft.file.tables.get("parts", PartsSection())
+    regions, found = regions_of(draft)
+    found += _problems(draft, section)
     if found:
         return draft, found
     highest = max(_reach(draft), default=0.0)
     if not highest:
         return draft, []  # no sound method needs any
     parting = Parting(
-        cuts=_cuts(draft, section),
+        cuts=_cuts(draft, section, regions.values()),
         largest=section.nodes or 0,
         f_parts=section.band * highest,
         f_seams=max(section.seam_band, section.band) * highest,
@@ -78,8 +80,28 @@ def build(draft: Draft) -> tuple[Draft, list[Problem]]:
     )
     model = draft.model
     if isinstance(model, Floor):
-        model = parting.of(model)
-    return replace(draft, model=model, parting=parting), []
+        found += _empty(model, regions)
+        model = model if found else parting.of(model)
+    return replace(draft, model=model, parting=parting), found
+
+
+def _unsound(draft: Draft) -> bool:
+    """Return whether a section of either kind has mistakes, that are told elsewhere."""
+    unsound = "parts" in draft.file.given and "parts" not in draft.file.tables
+    return unsound or draft.file.has_bad("part")
+
+
+def _empty(floor: Floor, regions: Mapping[str, Region]) -> Iterator[Problem]:
+    """Give parts in which nothing of a floor lies."""
+    middles = np.concatenate([middles_of(floor.nodes, e.connectivity) for e in floor.elements])
+    for place, region in regions.items():
+        if not region.holds(middles).any():
+            yield Problem(
+                place=place,
+                value=repr(region.name),
+                rule="nothing of the structure lies in it",
+                remedy="move its outline or its heights to where the structure is",
+            )
 
 
 def _reach(draft: Draft) -> Iterator[float]:
@@ -88,8 +110,8 @@ def _reach(draft: Draft) -> Iterator[float]:
         yield plan.interaction.integration.f_max or 0.0
 
 
-def _cuts(draft: Draft, section: PartsSection) -> Cuts:
-    """Return all planes; those between storeys lie halfway up."""
+def _cuts(draft: Draft, section: PartsSection, regions: Iterable[Region]) -> Cuts:
+    """Return all planes; those between storeys lie halfway up; and given parts."""
     z = set(section.cuts_z)
     if section.storeys and draft.building is not None:
         levels = sorted(storey.level for storey in draft.building.storeys)
@@ -98,19 +120,21 @@ def _cuts(draft: Draft, section: PartsSection) -> Cuts:
         x=np.array(sorted(set(section.cuts_x))),
         y=np.array(sorted(set(section.cuts_y))),
         z=np.array(sorted(z)),
+        regions=tuple(regions),
     )
 
 
 def _problems(draft: Draft, section: PartsSection) -> Iterator[Problem]:
     """Give what is wrong with the section beside the structure."""
     planes = [*section.cuts_x, *section.cuts_y, *section.cuts_z]
-    cut = bool(planes) or section.storeys
+    here = "parts" if "parts" in draft.file.given else "part"
+    cut = bool(planes) or section.storeys or "part" in draft.file.given
     if cut == (section.nodes is not None):
         yield Problem(
-            place="parts",
+            place=here,
             value="cuts and nodes" if cut else "neither cuts nor nodes",
-            rule="a building is cut by planes (cuts_x, cuts_y, cuts_z, storeys), or into parts of "
-            "about so many nodes, and not by both",
+            rule="a building is cut by planes (cuts_x, cuts_y, cuts_z, storeys) and into given "
+            "parts ([[part]]), or into parts of about so many nodes, and not by both",
             remedy="keep one" if cut else "add nodes = 5000, or say where it is cut",
         )
     if section.storeys and draft.building is None and "building" not in draft.file.given:
@@ -122,17 +146,17 @@ def _problems(draft: Draft, section: PartsSection) -> Iterator[Problem]:
         )
     if draft.methods and not any(_reach(draft)):
         yield Problem(
-            place="parts",
+            place=here,
             value="this section",
             rule="parts are for methods that find modes, and none here does",
-            remedy='leave [parts] out, or choose integration = "modal"',
+            remedy=f'leave [{here}] out, or choose integration = "modal"',
         )
     if draft.model is not None and not isinstance(draft.model, Floor):
         yield Problem(
-            place="parts",
+            place=here,
             value="this section",
             rule=f"{draft.model.name} came without elements, and cannot be cut",
-            remedy="leave [parts] out",
+            remedy=f"leave [{here}] out",
         )
     elif (box := _box(draft)) is not None:
         yield from _outside(*box, section)

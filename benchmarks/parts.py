@@ -21,10 +21,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from trundle.dynamics import ModalRatio, Modes, repeatable
+from trundle.dynamics import ModalRatio, Modes, answering_modes, repeatable
 from trundle.response import join, reduce_runs
 from trundle.road import RoadClass
 from trundle.route import Route
+from trundle.run.kept_answers import Asked, keep_answers, kept_answers
 from trundle.run.parts import modes_by_parts, with_kept_parts
 from trundle.simulate import Coupled, Crossing, Modal, lay_out, prepare, runs_with_mean
 from trundle.simulate.laying_out import point_rows
@@ -35,7 +36,7 @@ from trundle.structure.superelements import (
     Cuts,
     PartedStructure,
     Parting,
-    answering_by_parts,
+    as_modes_of,
     questions_of,
 )
 from trundle.vehicle import library_vehicle
@@ -113,7 +114,13 @@ def answering(parted: PartedStructure, tolerance: float) -> Modes:
     """Find what answers between the driveway and the tools, in place of all modes."""
     dofs, read = route_dofs(parted, as_sources(TRUCK)), point_rows(parted, TOOLS)
     questions = questions_of(parted, dofs, read)
-    return answering_by_parts(parted, questions, DAMPING.ratios, f_max=F_MAX, tolerance=tolerance)
+    asked = Asked(structure=parted, questions=questions, ratios=DAMPING.ratios, f_max=F_MAX)
+    found = kept_answers(asked)  # in TRUNDLE_CACHE, where that names a folder
+    if found is None:
+        pencil = parted.joined.pencil
+        found = answering_modes(pencil, questions, DAMPING.ratios, f_max=F_MAX, tolerance=tolerance)
+        keep_answers(asked, found)
+    return as_modes_of(parted, found)
 
 
 def crossing_levels(parted: PartedStructure, modes: Modes, runs: int) -> dict[str, object]:
@@ -172,7 +179,12 @@ def measured() -> None:
         y=DEPTH * np.arange(1, ny),
         z=HEIGHT * (np.arange(1, given.storeys) - 0.5),
     )
-    parted = Parting(cuts=cuts, f_parts=given.band * F_MAX, f_seams=5 * F_MAX).of(floor)
+    parted = Parting(
+        cuts=cuts,
+        f_parts=given.band * F_MAX,
+        f_seams=5 * F_MAX,
+        response_tolerance=given.answers or 0.0,
+    ).of(floor)
     parted = with_kept_parts(parted)  # in TRUNDLE_CACHE, where that names a folder
     start = time.process_time()
     pieces = parted.pieces

@@ -14,6 +14,11 @@ from trundle.dynamics.eigen import (
 )
 from trundle.dynamics.enquiry import Enquiry, Questions
 from trundle.dynamics.exact import ExactRecursion, ModalRecursion
+from trundle.dynamics.kept_answers import (
+    answers_as_arrays,
+    answers_from_arrays,
+    are_answers_of,
+)
 from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
 from trundle.dynamics.kept_parts import is_reduction_of, part_as_arrays, part_from_arrays
 from trundle.dynamics.lanczos import Interval
@@ -83,6 +88,9 @@ __all__ = [
     "Superelement",
     "answer_here",
     "answering_modes",
+    "answers_as_arrays",
+    "answers_from_arrays",
+    "are_answers_of",
     "are_modes_of",
     "available_backends",
     "block_diagonal",

@@ -138,7 +138,7 @@ def answering_modes(
         off, sizes = (np.zeros((len(lines), *loudest.shape)) for _ in range(2))
         shifts = [search.shift(omega) for omega in lines]
         for i, found in enumerate(answer_all(enquiry, shifts)):
-            off[i], sizes[i] = lines[i] * _difference(enquiry, basis, shifts[i], found)
+            off[i], sizes[i] = lines[i] * enquiry.difference(basis, shifts[i], found)
             span.take(enquiry, found, share * tolerance)
             told(1.0 - 0.5 ** ((len(known) + i + 1) / _HALFWAY))
         loudest = np.maximum(loudest, sizes.max(axis=0))
@@ -250,29 +250,6 @@ class _Span:
         basis = self._vectors[:, : self.size]
         square, turned = linalg.eigh(basis.T @ (pencil.stiffness @ basis))
         return np.sqrt(np.maximum(square, 0.0)), basis @ turned
-
-
-def _difference(
-    enquiry: Enquiry, basis: tuple[Array, Array] | None, shift: complex, found: Array
-) -> Array:
-    """Return by how much a basis is off an answer that is known, and how large that is.
-
-    Both over the routes and over the maps, for each of what is read and probed with: an array of
-    shape (2, 2, n_probes).
-    """
-    true = enquiry.seen(found[:, enquiry.n_combined :])
-    told = np.zeros_like(true)
-    if basis is not None:
-        omega, shapes = basis
-        seen, probed = enquiry.seen(shapes), enquiry.probed.T @ shapes
-        # statics are known: modes left out follow without delay
-        dynamic = 1.0 / (omega**2 - shift) - 1.0 / omega**2
-        told = enquiry.at_rest + seen @ (dynamic[:, None] * probed.T)
-    both = np.array(
-        [[np.linalg.norm(x[rows], axis=0) for rows in enquiry.groups] for x in (told - true, true)]
-    )
-    both[:, 1, : enquiry.questions.read.shape[0]] = 0.0  # from points to maps nothing leads
-    return both
 
 
 def _largest(off: Array, sizes: Array) -> Array:

@@ -85,6 +85,16 @@ class Enquiry:
     ) -> Enquiry:
         """Find the combinations of what pushes that matter up to a shift."""
         few = _combined(pencil, questions.pushed, rest, highest, _SHARE * tolerance)
+        return cls._of(pencil, questions, rest, few)
+
+    @classmethod
+    def of_probes(cls, pencil: DampedPencil, questions: Questions, rest: Factor) -> Enquiry:
+        """Ask for what is read and for probes alone: enough to tell errors."""
+        return cls._of(pencil, questions, rest, np.zeros((pencil.mass.shape[0], 0)))
+
+    @classmethod
+    def _of(cls, pencil: DampedPencil, questions: Questions, rest: Factor, few: Array) -> Enquiry:
+        """Ask for some combinations, what is read, and probes."""
         count = questions.pushed.shape[0]
         drawn = np.random.default_rng(count).standard_normal((count, _PROBES)) / np.sqrt(count)
         forces = np.hstack([few, questions.read.T.toarray(), questions.pushed.T @ drawn])
@@ -115,6 +125,37 @@ class Enquiry:
         """Which of what is seen lies on routes, and which on maps."""
         n, more = self.questions.pushed.shape[0], self.questions.mapped.shape[0]
         return slice(0, n), slice(n, n + more)
+
+    def difference(
+        self, basis: tuple[Array, Array] | None, shift: complex, answers: Array
+    ) -> Float[Array, "2 2 probes"]:
+        """Return by how much a basis is off answers that are known, and how large these are.
+
+        Both over the routes and over the maps, for each of what is read and probed with: first
+        how far off, then how large.
+
+        Parameters
+        ----------
+        basis : (ndarray, ndarray) or None
+            Circular frequencies [rad/s] and shapes; None for nothing but what is at rest.
+        shift : complex
+            At which the answers are [rad2/s2].
+        answers : ndarray of complex, shape (n_coordinates, n_forces)
+            All of them.
+        """
+        true = self.seen(answers[:, self.n_combined :])
+        told = np.zeros_like(true)
+        if basis is not None:
+            omega, shapes = basis
+            seen, probed = self.seen(shapes), self.probed.T @ shapes
+            # statics are known: modes left out follow without delay
+            dynamic = 1.0 / (omega**2 - shift) - 1.0 / omega**2
+            told = self.at_rest + seen @ (dynamic[:, None] * probed.T)
+        both = np.array(
+            [[np.linalg.norm(x[rows], axis=0) for rows in self.groups] for x in (told - true, true)]
+        )
+        both[:, 1, : self.questions.read.shape[0]] = 0.0  # from points to maps nothing leads
+        return both
 
     def at(self, shift: complex) -> Complex[Array, "coordinates forces"]:
         """Return the answers to all forces at a shift."""

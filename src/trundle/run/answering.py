@@ -14,14 +14,15 @@ import numpy as np
 
 from trundle._progress import Progress
 from trundle._typing import Array
-from trundle.dynamics import ByMaterial, Enquiry, Modes, repeatable
+from trundle.dynamics import ByMaterial, Enquiry, Modes, answering_modes, repeatable
 from trundle.run.executor import Executor
 from trundle.run.jobs import Job
+from trundle.run.kept_answers import Asked, keep_answers, kept_answers
 from trundle.run.loose_tasks import compute_loose
 from trundle.run.seen import map_rows, seen_by_jobs
 from trundle.structure import Structure
 from trundle.structure.elements import Damped
-from trundle.structure.superelements import PartedStructure, answering_by_parts, questions_of
+from trundle.structure.superelements import PartedStructure, as_modes_of, questions_of
 
 __all__ = ["AnswerTask", "answers_to_jobs", "asks_for_answers"]
 
@@ -88,7 +89,7 @@ def answers_to_jobs(
     """
     told = progress or _nobody
     structure.check_reach(f_max)
-    structure.reduced(tell=lambda _, share: told(_REDUCED * share))
+    pencil = structure.reduced(tell=lambda _, share: told(_REDUCED * share)).pencil
     told(_REDUCED)
 
     def answer_all(enquiry: Enquiry, shifts: Sequence[complex]) -> Iterator[Array]:
@@ -109,15 +110,21 @@ def answers_to_jobs(
 
     with repeatable():
         dofs, read = seen_by_jobs(structure, jobs)
-        return answering_by_parts(
-            structure,
-            questions_of(structure, dofs, read, map_rows(structure, jobs)),
-            ratios,
-            f_max=f_max,
-            tolerance=structure.parting.response_tolerance,
-            answer_all=answer_all,
-            progress=lambda share: told(_REDUCED + (1.0 - _REDUCED) * share),
-        )
+        questions = questions_of(structure, dofs, read, map_rows(structure, jobs))
+        asked = Asked(structure=structure, questions=questions, ratios=ratios, f_max=f_max)
+        found = kept_answers(asked)
+        if found is None:
+            found = answering_modes(
+                pencil,
+                questions,
+                ratios,
+                f_max=f_max,
+                tolerance=structure.parting.response_tolerance,
+                answer_all=answer_all,
+                progress=lambda share: told(_REDUCED + (1.0 - _REDUCED) * share),
+            )
+            keep_answers(asked, found)
+        return as_modes_of(structure, found)
 
 
 def _least_ratios(structure: Structure, job: Job, omega: Array) -> Array:

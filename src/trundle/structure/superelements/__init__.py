@@ -1,6 +1,6 @@
 """Find the modes of large structures by their parts."""
 
-from trundle.structure.superelements.answers import answering_by_parts, questions_of
+from trundle.structure.superelements.answers import as_modes_of, questions_of
 from trundle.structure.superelements.assembly import Joined
 from trundle.structure.superelements.cuts import Cuts, middles_of
 from trundle.structure.superelements.evidence import PartEvidence
@@ -19,7 +19,7 @@ __all__ = [
     "ReducedPencil",
     "Region",
     "Sorted",
-    "answering_by_parts",
+    "as_modes_of",
     "middles_of",
     "questions_of",
     "reduced_here",

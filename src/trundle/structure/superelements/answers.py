@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
-from jaxtyping import Float, Int
+from jaxtyping import Int
 from scipy import sparse
 
-from trundle._progress import Progress
 from trundle._typing import Array, SparseMatrix
 from trundle.dynamics import (
-    AnswerAll,
     AnsweringModes,
     Modes,
     Questions,
-    answer_here,
-    answering_modes,
     unit_rows,
 )
 from trundle.structure.superelements.whole import PartedStructure
 
-__all__ = ["answering_by_parts", "questions_of"]
+__all__ = ["as_modes_of", "questions_of"]
 
 _TOO_MANY = "; these are more than the modes: all modes cost less, without response_tolerance"
 
@@ -52,52 +47,16 @@ def questions_of(
     )
 
 
-def answering_by_parts(
-    structure: PartedStructure,
-    questions: Questions,
-    ratios: Callable[[Float[Array, " lines"]], Float[Array, " lines"]],
-    *,
-    f_max: float,
-    tolerance: float,
-    answer_all: AnswerAll = answer_here,
-    progress: Progress | None = None,
-) -> Modes:
-    """Return combinations that answer as a structure does, see `dynamics.answering_modes`.
+def as_modes_of(structure: PartedStructure, found: AnsweringModes) -> Modes:
+    """Return combinations that answer as modes of a structure, with what a result must say of them.
 
     Parameters
     ----------
     structure : PartedStructure
         The structure, by its parts.
-    questions : Questions
-        What is asked of it.
-    ratios : callable
-        Gives the least damping ratio of any mode at circular frequencies [rad/s].
-    f_max : float
-        Highest frequency at which it answers [Hz].
-    tolerance : float
-        Error that is allowed at any frequency.
-    answer_all : callable
-        Who solves at the frequencies.
-    progress : callable, optional
-        Told about how much of the work is done, 0 to 1.
-
-    Raises
-    ------
-    InputError
-        The parts are kept to less than 1.2 times that frequency.
-    ConvergenceError
-        It does not come within the tolerance.
+    found : AnsweringModes
+        Combinations of their coordinates.
     """
-    structure.check_reach(f_max)
-    found = answering_modes(
-        structure.joined.pencil,
-        questions,
-        ratios,
-        f_max=f_max,
-        tolerance=tolerance,
-        answer_all=answer_all,
-        progress=progress,
-    )
     return replace(found.modes, basis=structure.joined, answering=_told(found))
 
 

@@ -68,7 +68,7 @@ class Region:
 
     @property
     def area(self) -> float:
-        """Its area in plan [m2]."""
+        """The area in plan [m2]."""
         return float(shapely.Polygon(self.outline).area)
 
     def overlaps(self, other: Region) -> bool:

@@ -71,7 +71,7 @@ bench: .venv/.ready-dev
 	$(BIN)/python benchmarks/long_record.py
 	$(BIN)/python benchmarks/memory.py
 	$(BIN)/python benchmarks/estimate.py
-	$(BIN)/python benchmarks/building.py
+	$(BIN)/python benchmarks/meshing.py
 	$(BIN)/python benchmarks/day.py
 	$(BIN)/python benchmarks/parts.py
 	$(BIN)/python benchmarks/hundred_workers.py

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from studies import GOOD, run_main
+from studies import BUILDING, GOOD, run_main
 from trundle import study_file
 from trundle.cli import afford
 from trundle.dynamics import natural_modes
@@ -14,7 +14,7 @@ from trundle.mitigate.estimate import estimate_of_changes
 from trundle.run import estimate
 from trundle.run.estimate import estimate_of
 from trundle.run.jobs import plan_jobs
-from trundle.study_file.build import load_study
+from trundle.study_file.build import load_study, study_from_text
 
 
 @pytest.fixture
@@ -42,6 +42,23 @@ def test_the_number_of_modes_is_weyl_s(study):
     floor = found.floor
     counted = natural_modes(floor.mass, floor.stiffness, f_max=112.0).n_modes
     assert estimate.n_modes_of(found, job) == pytest.approx(counted, rel=0.25)
+
+
+def test_answers_are_counted_by_frequencies_not_by_modes():
+    """A building of nine times the area has nine times the modes: all of them cost 81 times as much
+    (dofs times modes), what answers 27 times (a factor a frequency, to the power 1.5) and its parts
+    9 times; half the damping costs twice the frequencies."""
+    parts = "\n[parts]\nnodes = 100\nband = 2\nresponse_tolerance = 0.05\n"
+    study = study_from_text(BUILDING + parts)
+    (job,) = plan_jobs(study)
+    n, dofs = estimate.n_modes_of(study, job), study.floor.n_dofs
+    spent = [estimate._answer_seconds(study, job, k * n, 60.0) for k in (1, 9)]
+    assert spent[1] - 1e-4 * dofs == pytest.approx(27.0 * (spent[0] - 1e-4 * dofs))
+    half = study_from_text((BUILDING + parts).replace('ratio = "3 %"', 'ratio = "1.5 %"'))
+    (other,) = plan_jobs(half)
+    more = estimate._answer_seconds(half, other, n, 60.0) - 1e-4 * dofs
+    assert more == pytest.approx(1.9 * (spent[0] - 1e-4 * dofs), rel=0.06)
+    assert estimate.seconds_of_modes(study, [job]) == spent[0]
 
 
 def test_time_grows_with_what_is_asked_for(study):

@@ -1,6 +1,12 @@
 """Reduce vibrating things to matrices and step them through time."""
 
-from trundle.dynamics.answering import AnswerAll, AnsweringModes, answer_here, answering_modes
+from trundle.dynamics.answering import (
+    AnswerAll,
+    AnsweringModes,
+    answer_here,
+    answering_modes,
+    spacing_at_first,
+)
 from trundle.dynamics.combined_modes import ResponseBasis, response_basis
 from trundle.dynamics.damping import ByMaterial, Damping, ModalRatio, Rayleigh
 from trundle.dynamics.eigen import (
@@ -116,6 +122,7 @@ __all__ = [
     "responses_of",
     "restoring_filter",
     "shift_near",
+    "spacing_at_first",
     "together",
     "unit_rows",
 ]

@@ -40,7 +40,7 @@ from trundle.dynamics.pencil import DampedPencil, Product, shift_near
 from trundle.dynamics.sparse_solver import Factor
 from trundle.errors import ConvergenceError
 
-__all__ = ["AnswerAll", "AnsweringModes", "answer_here", "answering_modes"]
+__all__ = ["AnswerAll", "AnsweringModes", "answer_here", "answering_modes", "spacing_at_first"]
 
 AnswerAll: TypeAlias = Callable[[Enquiry, Sequence[complex]], Iterator[Array]]
 """Gives the answers of an enquiry at some shifts, in their order."""
@@ -78,6 +78,11 @@ class AnsweringModes:
     error: float
     n_frequencies: int
     n_below: int
+
+
+def spacing_at_first(ratio: float) -> float:
+    """Return the spacing of the first frequencies at a damping ratio, of their logarithm."""
+    return _COARSE * max(ratio, _LEAST_RATIO)
 
 
 def answer_here(enquiry: Enquiry, shifts: Sequence[complex]) -> Iterator[Array]:
@@ -166,7 +171,7 @@ class _Search:
 
     def first(self) -> Array:
         """Return the first frequencies, rising by a like share."""
-        step = _COARSE * float(self._ratio(np.geomspace(self.low, self.high, 50)).min())
+        step = spacing_at_first(float(self.ratios(np.geomspace(self.low, self.high, 50)).min()))
         count = max(3, int(np.ceil(np.log(self.high / self.low) / step)) + 1)
         return np.geomspace(self.low, self.high, count)
 

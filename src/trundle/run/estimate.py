@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from trundle.dynamics import spacing_at_first
 from trundle.run.costs import Size, run_in_steps
 from trundle.run.jobs import Job, plan_jobs
 from trundle.run.mode_cache import has_modes
@@ -33,6 +34,11 @@ __all__ = [
 
 _MODES = 8e-7  # s for each degree of freedom and mode
 _PARTED_MODES = 2e-7  # s for each degree of freedom and mode that is found by parts
+_REDUCED = 1e-4  # s for each degree of freedom of parts that are reduced
+_COORDINATES = 1.8  # of parts and seams, for each mode below the frequency to which parts are kept
+_AN_ANSWER = 1.3e-6  # s for each of them to the power 1.5, at one frequency
+_LOOKED_AT = 3.6  # frequencies, for each at which is looked at first
+_ANSWERING = 1200.0  # combinations that stand for modes, at most
 _LAY_OUT = 5e-5  # s for each degree of freedom, for each job
 _FIGURES = 0.6  # s for each cell's figures and tables
 
@@ -97,7 +103,10 @@ def estimate_of(study: Study) -> Estimate:
 
 def size_of(study: Study, job: Job) -> Size:
     """Return how large a study's floor is for one of its jobs."""
-    return Size(n_dofs=study.floor.n_dofs, n_modes=n_modes_of(study, job))
+    n_modes = n_modes_of(study, job)
+    if _answers(study):
+        n_modes = min(n_modes, _ANSWERING)
+    return Size(n_dofs=study.floor.n_dofs, n_modes=n_modes)
 
 
 def job_seconds(job: Job, size: Size) -> float:
@@ -161,7 +170,24 @@ def seconds_of_modes(study: Study, jobs: Sequence[Job]) -> float:
     if f_max == 0.0 or has_modes(study.floor, f_max):
         return 0.0
     n_modes = max(n_modes_of(study, job) for job in jobs)
+    if _answers(study):
+        return max(_answer_seconds(study, job, n_modes, f_max) for job in jobs)
     return mode_seconds(study.floor.n_dofs, n_modes, parted=study.parting is not None)
+
+
+def _answers(study: Study) -> bool:
+    """Return whether what answers stands for modes."""
+    return study.parting is not None and study.parting.response_tolerance > 0.0
+
+
+def _answer_seconds(study: Study, job: Job, n_modes: float, f_max: float) -> float:
+    """Return about how long it takes to find what answers, parts reduced [s]."""
+    assert study.parting is not None
+    ratio = float(job.method.interaction.damping.ratios(np.array([2.0 * np.pi * f_max]))[0])
+    first = 1.0 + np.log(max(f_max, np.e)) / spacing_at_first(ratio)
+    coordinates = _COORDINATES * n_modes * study.parting.f_parts / f_max
+    solved = _LOOKED_AT * first * _AN_ANSWER * coordinates**1.5
+    return _REDUCED * study.floor.n_dofs + solved
 
 
 def peak_memory(jobs: Sequence[Job], n_dofs: int, n_modes: float, *, parted: bool = False) -> float:

@@ -1,5 +1,6 @@
 """What a study will take is told before it is taken."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ from trundle.mitigate.estimate import estimate_of_changes
 from trundle.run import estimate
 from trundle.run.estimate import estimate_of
 from trundle.run.jobs import plan_jobs
+from trundle.simulate import Newmark, Rayleigh
 from trundle.study_file.build import load_study, study_from_text
 
 
@@ -59,6 +61,25 @@ def test_answers_are_counted_by_frequencies_not_by_modes():
     more = estimate._answer_seconds(half, other, n, 60.0) - 1e-4 * dofs
     assert more == pytest.approx(1.9 * (spent[0] - 1e-4 * dofs), rel=0.06)
     assert estimate.seconds_of_modes(study, [job]) == spent[0]
+
+
+def test_direct_integration_beside_parts_takes_the_factor_of_the_whole():
+    """480 bytes a degree of freedom and doubling of them, however the modes of others are found."""
+    study = study_from_text(BUILDING + "\n[parts]\nnodes = 100\n")
+    jobs, n = plan_jobs(study), 1_000_000
+    direct = replace(
+        jobs[0],
+        method=replace(
+            jobs[0].method,
+            interaction=replace(
+                jobs[0].method.interaction,
+                integration=Newmark(dt=0.01),
+                damping=Rayleigh.through(0.03, 5.0, 20.0),
+            ),
+        ),
+    )
+    few, more = (estimate.peak_memory([job], n, 0.0, parted=True) for job in (jobs[0], direct))
+    assert more - few == pytest.approx(480.0 * n * 19.93, rel=0.05)
 
 
 def test_time_grows_with_what_is_asked_for(study):

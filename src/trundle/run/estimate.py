@@ -192,8 +192,10 @@ def _answer_seconds(study: Study, job: Job, n_modes: float, f_max: float) -> flo
 
 def peak_memory(jobs: Sequence[Job], n_dofs: int, n_modes: float, *, parted: bool = False) -> float:
     """Return about how much memory is held at the peak [bytes]."""
-    whole = 2.5 * 8.0 * n_dofs * n_modes + _FACTOR * n_dofs * np.log2(n_dofs)
-    floor = _PARTED * n_dofs if parted else whole
+    factor = _FACTOR * n_dofs * np.log2(n_dofs)
+    floor = 2.5 * 8.0 * n_dofs * n_modes + factor
+    if parted:  # what is stepped directly is not reduced
+        floor = _PARTED * n_dofs + (0.0 if all(job.modal for job in jobs) else factor)
     return _BARE + floor + max((_memory_of(job) for job in jobs), default=0.0)
 
 

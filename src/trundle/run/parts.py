@@ -98,7 +98,7 @@ def with_kept_parts(structure: Structure, executor: Executor | None = None) -> S
     if not isinstance(structure, PartedStructure) or structure.reducer is not reduced_here:
         return structure  # not cut, or somebody reduces it already
 
-    def reduce(pieces: Sorted, f_max: float, tell: Tell) -> tuple[Superelement, ...]:
+    def reduce(pieces: Sorted, f_max: Sequence[float], tell: Tell) -> tuple[Superelement, ...]:
         """Reduce all distinct parts."""
         return _reduced(pieces, f_max, executor, tell)
 
@@ -172,21 +172,24 @@ def _nobody(share: float) -> None:
 
 
 def _reduced(
-    pieces: Sorted, f_max: float, executor: Executor | None, tell: Tell
+    pieces: Sorted, f_max: Sequence[float], executor: Executor | None, tell: Tell
 ) -> tuple[Superelement, ...]:
     """Return the distinct parts reduced: kept ones, and all others by an executor."""
     parts = [pieces.part(number) for number in range(len(pieces.distinct))]
+    reach = dict[str, float]()  # equal contents are reduced once, as far as any of them is needed
     names = [part.content_hash for part in parts]
+    for name, f in zip(names, f_max, strict=True):
+        reach[name] = max(f, reach.get(name, 0.0))
     tell("parts that were kept", 0.0)
+    by_name = dict(zip(names, parts, strict=True))
     with repeatable():
-        kept = {name: kept_part(part, f_max) for name, part in zip(names, parts, strict=True)}
+        kept = {name: kept_part(by_name[name], f) for name, f in reach.items()}
     missing = [
-        (ReductionTask(name=name, f_max=f_max), part)
-        for name, part in zip(names, parts, strict=True)
+        (ReductionTask(name=name, f_max=f), by_name[name])
+        for name, f in reach.items()
         if kept[name] is None
     ]
     label = f"{len(missing)} of {len(parts)} distinct parts"
-    by_name = dict(zip(names, parts, strict=True))
     found = compute_loose(
         missing,
         executor,

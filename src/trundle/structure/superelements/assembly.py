@@ -279,9 +279,10 @@ def _pencil(
     numbers: dict[tuple[object, ...], int] = {}
     kinds: list[ReducedPiece] = []
     pieces, first = [], 0
+    reach = max(part.f_max for part in parts)  # of the nearest; others may be kept to less
     for own, basis, share in zip(placed, bases, shares.tolist(), strict=True):
         part = parts[own.kind]
-        part, key = part.below(share * part.f_max), (share, basis.key)
+        part, key = part.below(share * reach), (share, basis.key)
         if key not in numbers:
             numbers[key] = len(kinds)
             kinds.append(_reduced(part, basis.shapes))

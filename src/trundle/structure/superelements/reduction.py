@@ -47,6 +47,18 @@ class Sorted:
     placed: tuple[Placed, ...]
     where: Float[Array, "dofs 3"]
 
+    def shares(self, nearness: Nearness | None) -> Float[Array, " pieces"]:
+        """Return the share of the whole band to which each piece is kept; 1 near to anything."""
+        if nearness is None:
+            return np.ones(len(self.placed))
+        return nearness.shares([self.where[own.dofs] for own in self.placed])
+
+    def reach(self, nearness: Nearness | None) -> Float[Array, " distinct"]:
+        """Return the share that the nearest copy of each distinct piece is kept to."""
+        most = np.zeros(len(self.distinct))
+        np.maximum.at(most, [own.kind for own in self.placed], self.shares(nearness))
+        return most
+
     def part(self, number: int) -> Part:
         """Return what a reduction needs of one of the distinct ones."""
         piece = self.distinct[number]
@@ -142,30 +154,32 @@ def _found(piece: Piece, distinct: Sequence[Piece], *, turned: bool) -> tuple[in
     return len(distinct), None
 
 
-Reducer: TypeAlias = Callable[[Sorted, float, Tell], Sequence[Superelement]]
-"""Who reduces the distinct parts, keeping their own modes below a frequency [Hz]."""
+Reducer: TypeAlias = Callable[[Sorted, Sequence[float], Tell], Sequence[Superelement]]
+"""Who reduces the distinct parts, keeping the own modes of each below its frequency [Hz]."""
 
 
-def reduced_here(pieces: Sorted, f_parts: float, tell: Tell = silent) -> list[Superelement]:
+def reduced_here(
+    pieces: Sorted, f_parts: Sequence[float], tell: Tell = silent
+) -> list[Superelement]:
     """Reduce every distinct part, one after the other.
 
     Parameters
     ----------
     pieces : Sorted
         The pieces.
-    f_parts : float
-        Own modes below are kept [Hz].
+    f_parts : sequence of float
+        Own modes of each distinct part below are kept [Hz].
     tell : callable
         Told what is being done, and the share done.
     """
     found: list[Superelement] = []
-    for number, piece in enumerate(pieces.distinct):
+    for number, (piece, f_max) in enumerate(zip(pieces.distinct, f_parts, strict=True)):
         what = f"part {number + 1} of {len(pieces.distinct)}, {len(piece.dofs)} dofs"
 
         def progress(share: float, what: str = what) -> None:
             tell(what, share)
 
-        found.append(pieces.part(number).reduced(f_parts, progress=progress))
+        found.append(pieces.part(number).reduced(f_max, progress=progress))
     return found
 
 
@@ -195,9 +209,6 @@ def joined_parts(
     tell : callable
         Told what is being done, and the share done.
     """
-    shares = np.ones(len(pieces.placed))
-    if nearness is not None:
-        shares = nearness.shares([pieces.where[own.dofs] for own in pieces.placed])
     return join(
         [
             RestingPart(reduced=part, stiffness=piece.stiffness)
@@ -206,6 +217,6 @@ def joined_parts(
         pieces.placed,
         n_dofs=n_dofs,
         f_seams=f_seams,
-        shares=shares,
+        shares=pieces.shares(nearness),
         tell=lambda share: tell("seams between parts", share),
     )

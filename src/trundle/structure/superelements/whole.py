@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -228,12 +228,16 @@ class PartedStructure:
     def _reduce(self, tell: Tell) -> Joined:
         return joined_parts(
             self.pieces,
-            self.reducer(self.pieces, self.parting.f_parts, tell),
+            self.reducer(self.pieces, self._f_parts(), tell),
             n_dofs=self.n_dofs,
             f_seams=self.parting.f_seams,
             nearness=self.nearness,
             tell=tell,
         )
+
+    def _f_parts(self) -> list[float]:
+        """Return how far own modes of each distinct part are needed [Hz]: far ones less far."""
+        return (self.parting.f_parts * self.pieces.reach(self.nearness)).tolist()
 
     def narrower(self, factor: float, *, least: float) -> PartedStructure:
         """Return the same with its parts and seams kept to so many times less.
@@ -249,10 +253,13 @@ class PartedStructure:
         )
         wide = self.joined.parts
 
-        def fewer(_: Sorted, f_parts: float, tell: Tell) -> list[Superelement]:
+        def fewer(_: Sorted, f_parts: Sequence[float], tell: Tell) -> list[Superelement]:
             """Leave out own modes of what is reduced."""
             tell("parts kept to less", 0.0)
-            return [part.below(max(least, min(f_parts, _highest_but_two(part)))) for part in wide]
+            return [
+                part.below(max(least, min(f, _highest_but_two(part))))
+                for part, f in zip(wide, f_parts, strict=True)
+            ]
 
         near = self.nearness
         if near is not None:

@@ -14,7 +14,7 @@ from trundle.route import Route
 from trundle.simulate import Coupled, Crossing, Modal, ensemble
 from trundle.simulate.laying_out import point_rows
 from trundle.structure import Spot
-from trundle.structure.superelements import Cuts, Parting
+from trundle.structure.superelements import Cuts, Parting, reduced_here
 from trundle.structure.superelements.nearness import Nearness
 from trundle.vehicle import library_vehicle
 
@@ -71,6 +71,25 @@ def test_levels_near_the_route_are_those_of_parts_kept_alike():
             assert "far from routes and points" in structure.joined.told
     np.testing.assert_allclose(found[1], found[0], rtol=0.05)
     assert modes[1] < 0.8 * modes[0]
+
+
+def test_far_parts_are_reduced_no_further_than_they_are_kept():
+    """As far as the nearest copy of each needs; own modes are those of parts that were reduced all
+    the way and cut."""
+    parting = Parting(cuts=CUTS, f_parts=100.0, f_seams=250.0, near=4.0).of(building())
+    middle = {"middle": Spot(x=BAYS * 3.0, y=3.0, on="level 1")}  # both ends are far, and alike
+    structure = parting.near_to(point_rows(building(), middle).indices)
+    most = structure.pieces.reach(structure.nearness)
+    assert most.max() == 1.0
+    assert most.min() < 0.5
+    reached = [part.f_max for part in structure.joined.parts]
+    np.testing.assert_allclose(reached, 100.0 * most)
+
+    def all_the_way(pieces, f_parts, tell):
+        return reduced_here(pieces, [100.0] * len(f_parts), tell)
+
+    alike = replace(structure, reducer=all_the_way)
+    np.testing.assert_allclose(structure.joined.pencil.omega, alike.joined.pencil.omega, rtol=1e-9)
 
 
 def test_what_it_is_near_to_decides_its_content():

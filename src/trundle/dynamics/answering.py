@@ -217,23 +217,21 @@ class _Span:
         # combinations as large as they are, every reading alike: one that is far counts too
         squares[: enquiry.n_combined] = squares[: enquiry.n_combined].sum()
         scale = np.tile(1.0 / np.sqrt(np.where(squares > 0.0, squares, 1.0)), 2)
-        self._append(enquiry.pencil.mass, *self._apart(block * scale, loaded * scale), small**2)
-
-    def _apart(self, block: Array, loaded: Array) -> tuple[Array, Array]:
-        """Take off what lies in the basis already."""
-        basis, heavy = self._vectors[:, : self.size], self._loaded[:, : self.size]
-        for _ in range(2):
-            along = heavy.T @ block
-            block, loaded = block - basis @ along, loaded - heavy @ along
-        return block, loaded
+        self._append(enquiry.pencil.mass, block * scale, loaded * scale, small**2)
 
     def _append(self, mass: Product, block: Array, loaded: Array, least: float) -> None:
-        """Append the directions of a block that are larger than the least square."""
-        squares, turned = linalg.eigh(block.T @ loaded)
+        """Append the directions of a block that are new and larger than the least square.
+
+        What is new of it is told from products alone: with an M-orthonormal basis it is as large
+        as the block less what it has along the basis. Only directions that are kept are formed.
+        """
+        along = self._loaded[:, : self.size].T @ block
+        squares, turned = linalg.eigh(block.T @ loaded - along.T @ along)
         kept = squares > least
         if not kept.any():
             return
-        new = block @ (turned[:, kept] / np.sqrt(squares[kept]))
+        few = turned[:, kept] / np.sqrt(squares[kept])
+        new = block @ few - self._vectors[:, : self.size] @ (along @ few)
         heavy = mass @ new
         for _ in range(2):  # small directions bring back what was taken off
             new, heavy = self._apart(new, heavy)
@@ -244,6 +242,12 @@ class _Span:
         here = slice(self.size, self.size + new.shape[1])
         self._vectors[:, here], self._loaded[:, here] = new, heavy
         self.size += new.shape[1]
+
+    def _apart(self, block: Array, loaded: Array) -> tuple[Array, Array]:
+        """Take off what lies in the basis already."""
+        basis, heavy = self._vectors[:, : self.size], self._loaded[:, : self.size]
+        along = heavy.T @ block
+        return block - basis @ along, loaded - heavy @ along
 
     def _make_room(self, more: int) -> None:
         while self.size + more > self._vectors.shape[1]:

@@ -44,7 +44,8 @@ def _criteria() -> str:
     for quantity, some in groupby(ordered, key=lambda one: one.quantity):
         rows = [_criterion(one) for one in some]
         parts.append(f"\n## {_TITLES[quantity]}\n")
-        parts.append(table(("name", "title", "limits", "axis", "source and confidence"), rows))
+        head = ("name", "title", "limits", "axis", "source and confidence")
+        parts.append(table(head, rows, kind="sources"))
     return "\n".join(parts)
 
 

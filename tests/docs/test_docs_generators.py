@@ -317,6 +317,12 @@ def test_single_limits_have_no_range_that_never_ends():
     assert limits == ["0.3 gal", "0.1 gal, 1 to 100 Hz"]
 
 
+def test_a_star_is_escaped_in_words_and_kept_in_code():
+    assert (
+        api_pages._plain("Write ``figures/*.png``, of *x*.") == r"Write `figures/*.png`, of \*x\*."
+    )
+
+
 def test_an_option_in_a_sentence_is_no_dash():
     """Two strokes would be set as one dash."""
     page = command_pages._page("assess", dict(command_pages.commands())["assess"])

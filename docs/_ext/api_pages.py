@@ -90,7 +90,9 @@ def _row(module: ModuleType, name: str, home: str) -> tuple[str, str]:
 
 def _plain(text: str) -> str:
     """Return a docstring's words in Markdown."""
-    return re.sub(r"(?<!`)`([^`]+)`(?!`)", r"`\1`", text.replace("``", "`")).replace("*", "\\*")
+    parts = text.replace("``", "`").split("`")
+    parts[::2] = [words.replace("*", "\\*") for words in parts[::2]]
+    return "`".join(parts)
 
 
 def _directive(name: str, value: object) -> list[str]:

@@ -22,6 +22,7 @@ _CODES = (
     (INTERRUPTED, "stopped by Ctrl-C"),
 )
 _BLOCK = re.compile(r"^```([^\n]*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+_OPTION = re.compile(r"(?<![\w`-])--[a-z][a-z-]*")
 _DEFAULT = re.compile(r"\s*\[default: (.*?)\]\s*$")
 
 
@@ -66,7 +67,11 @@ def _page(name: str, command: Any) -> str:
     first, _, rest = (command.help or "").replace("\\[", "[").partition("\n\n")
     arguments = [one for one in command.params if not one.opts[0].startswith("-")]
     options = [one for one in command.params if one.opts[0].startswith("-")]
-    parts = [f"# `trundle {name}`\n\n{first}\n", _usage(name, arguments), rest]
+    parts = [
+        f"# `trundle {name}`\n\n{first}\n",
+        _usage(name, arguments),
+        _OPTION.sub(r"`\g<0>`", rest),
+    ]
     if arguments:
         rows = ((code(one.metavar or one.name), _said(one)[0]) for one in arguments)
         parts.append("\n## Arguments\n" + table(("argument", "what"), rows))
@@ -96,7 +101,7 @@ def _said(parameter: Any) -> tuple[str, str]:
     """Return what a parameter says of itself, and the default that it names there."""
     words = (parameter.help or "").replace("\\[", "[")
     told = _DEFAULT.search(words)
-    return _DEFAULT.sub("", words), "" if told is None else told[1]
+    return _OPTION.sub(r"`\g<0>`", _DEFAULT.sub("", words)), "" if told is None else told[1]
 
 
 def _kind(option: Any) -> str:

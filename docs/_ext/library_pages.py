@@ -5,19 +5,19 @@ from __future__ import annotations
 import re
 from itertools import groupby
 
+import numpy as np
 from pages import GENERATED, code, table, write_page
 
 from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
 from trundle.units import MICROMETRE_PER_SECOND
 from trundle.vehicle import GRAVITY, VEHICLES, Vehicle
+from trundle.views.words import limit_words
 
 __all__ = ["write_library"]
 
 _UNITS = {
     "band_rms_velocity": (MICROMETRE_PER_SECOND, "um/s"),
     "band_rms_displacement": (1e-6, "um"),
-    "vdv": (1.0, "m/s1.75"),
-    "response_factor": (1.0, ""),
 }
 _TITLES = {
     "band_rms_velocity": "RMS velocity in one-third octaves",
@@ -44,7 +44,8 @@ def _criteria() -> str:
     for quantity, some in groupby(ordered, key=lambda one: one.quantity):
         rows = [_criterion(one) for one in some]
         parts.append(f"\n## {_TITLES[quantity]}\n")
-        parts.append(table(("name", "title", "limits", "axis", "source and confidence"), rows))
+        head = ("name", "title", "limits", "axis", "source and confidence")
+        parts.append(table(head, rows, kind="sources"))
     return "\n".join(parts)
 
 
@@ -60,10 +61,15 @@ def _criterion(one: Criterion) -> tuple[str, ...]:
 
 
 def _limits(one: Criterion) -> str:
+    if one.quantity not in BY_FREQUENCY:
+        ends = (
+            ""
+            if np.isinf(one.frequencies[-1])
+            else f", {one.frequencies[0]:g} to {one.frequencies[-1]:g} Hz"
+        )
+        return limit_words(one) + ends
     scale, unit = _UNITS.get(one.quantity, (1.0, "m/s2"))
     values = [f"{value / scale:.4g}" for value in one.limits]
-    if one.quantity not in BY_FREQUENCY and len(values) == 1:
-        return f"{values[0]} {unit}"
     pairs = zip(one.frequencies, values, strict=True)
     if len(set(values)) == 1:
         return f"{values[0]} {unit}, {one.frequencies[0]:g} to {one.frequencies[-1]:g} Hz"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from xml.etree import ElementTree as ET
 
 from docutils import nodes
 from docutils.utils.math import latex2mathml
@@ -14,6 +15,10 @@ __all__ = ["as_mathml", "setup"]
 # environments of whole lines, for which aligned ones stand inside a block
 _ENVIRONMENT = re.compile(r"\\(begin|end)\{(?:align|gather|equation|split|multline)\*?\}")
 _SIZES = re.compile(r"\\[bB]igg?[lrm]?(?![A-Za-z])")  # brackets grow by themselves
+# without braces the converter takes all digits for one number
+_HALVES = re.compile(r"\\([dt]?frac)\s*(\d)\s*(\d)")
+_NAMES = "http://www.w3.org/1998/Math/MathML"
+_ACCENTS = frozenset("˙¨ˉˆ^~˜")
 _LOGGER = logging.getLogger(__name__)
 
 
@@ -25,11 +30,27 @@ def as_mathml(formula: str, *, block: bool) -> str:
     docutils.utils.math.MathError
         A formula that is not understood.
     """
-    plain = _SIZES.sub("", formula)
+    plain = _HALVES.sub(r"\\\1{\2}{\3}", _SIZES.sub("", formula))
     plain = _ENVIRONMENT.sub(lambda found: f"\\{found[1]}{{aligned}}", plain)
     if block and ("&" in plain or "\\\\" in plain) and "\\begin" not in plain:
         plain = f"\\begin{{aligned}}{plain}\\end{{aligned}}"
-    return str(latex2mathml.tex2mathml(plain, as_block=block))
+    return _accented(str(latex2mathml.tex2mathml(plain, as_block=block)))
+
+
+def _accented(made: str) -> str:
+    """Hang what stands below an accented letter, as the converter has it, on it as its index."""
+    if "<munderover" not in made:
+        return made
+    ET.register_namespace("", _NAMES)
+    root = ET.fromstring(made)  # noqa: S314 - the converter made it
+    for one in root.iter(f"{{{_NAMES}}}munderover"):
+        letter, index, accent = one
+        if (accent.text or "").strip() in _ACCENTS:
+            over = ET.Element(f"{{{_NAMES}}}mover", {"accent": "true"})
+            over.extend((letter, accent))
+            one.tag = f"{{{_NAMES}}}msub"
+            one[:] = (over, index)
+    return ET.tostring(root, encoding="unicode")
 
 
 def _show(self: object, node: nodes.Element, *, block: bool) -> None:

@@ -9,6 +9,7 @@ from api_pages import write_api
 from case_pages import write_cases
 from command_pages import write_commands
 from diagrams import write_diagrams
+from docutils import nodes
 from gallery import write_gallery
 from library_pages import write_library
 from pages import DOCS
@@ -24,6 +25,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("builder-inited", _write)
     app.connect("env-get-outdated", _read_front_again)
     app.connect("source-read", _list_front)
+    app.connect("doctree-read", _wrap_words)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -34,6 +36,17 @@ def _write(app: Sphinx) -> None:
         write_library, write_paper,
     ):  # fmt: skip
         write()
+
+
+_DRAWN = frozenset("┃│┏┗")
+
+
+def _wrap_words(app: Sphinx, tree: nodes.document) -> None:
+    """Have long lines of what a command says go on below, unless they are a table's."""
+    del app
+    for block in tree.findall(nodes.literal_block):
+        if block.get("language") == "text" and not _DRAWN.intersection(block.astext()):
+            block["classes"].append("words")
 
 
 _LIST = re.compile(r"```\{toctree\}\n(?:.*\n)*?```\n")

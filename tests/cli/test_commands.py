@@ -7,10 +7,11 @@ import pytest
 
 from studies import GOOD, run_main
 from trundle.cli import commands
-from trundle.cli.commands import _corners, _known
+from trundle.cli.commands import _known
 from trundle.criteria import all_criteria, find_criterion
 from trundle.study_file import study_from_text
 from trundle.study_file.build import load_study
+from trundle.views.words import limit_words
 
 
 @pytest.fixture
@@ -172,7 +173,7 @@ def test_what_is_not_known_is_a_dash():
 )
 def test_limits_are_printed_in_the_units_of_people(name, text):
     """VC-A is 50 um/s from 8 Hz (Gordon 1991); DG11's name is its limit in um/s; offices have R = 4."""
-    assert _corners(find_criterion(name)) == text
+    assert limit_words(find_criterion(name)) == text
 
 
 def test_criteria_for_programs_are_in_si_with_source_and_confidence(command):

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -100,6 +101,41 @@ def test_json_for_programs(shaken):
     assert sizes == sorted(sizes, reverse=True)
     assert found["table"] is None
     assert found["figure"] == "t.svg"
+
+
+@pytest.mark.parametrize(
+    ("quantity", "asked", "unit", "size"),
+    [
+        ("mobility", 'velocity = "in/s"', "(in/s)/N", 25400.0),
+        ("accelerance", 'acceleration = "gal"', "gal/N", 10.0),
+        ("receptance", 'displacement = "mil"', "mil/N", 25400.0),
+        ("receptance", 'velocity = "in/s"', "nm/N", 1.0),
+    ],
+)
+def test_people_read_the_unit_that_the_study_asks_for(
+    shaken, monkeypatch, quantity, asked, unit, size
+):
+    """By hand: an inch is 25400 um, a gal 10 mm/s2, a mil 25400 nm. Programs read what they did."""
+    drawn = []
+    monkeypatch.setattr(
+        "trundle.report.figures.transfer.transfer_figure",
+        lambda *told: drawn.append(told) or Figure(),
+    )
+    said = {}
+    for name, text in (("usual", GOOD), ("asked", f"{GOOD}\n[report]\n{asked}\n")):
+        arguments = ("--from", "tool", "--quantity", quantity, "--f-min", "2 Hz", "--lines", "60")
+        files = ("--out", f"{name}.csv", "--figure", "t.png")
+        assert shaken(*arguments, *files, text=text)[0] == 0
+        said[name] = shaken(*arguments, text=text)[1].out
+        found = json.loads(shaken(*arguments, "--json", text=text)[1].out)
+        said[f"{name} json"] = found["unit"], found["pairs"]
+    (usual, _, _), (read, _, _) = drawn
+    assert read[0].unit == unit
+    np.testing.assert_allclose(size * read[0].values, usual[0].values, rtol=1e-12)
+    assert f"magnitude [{unit}]" in said["asked"]
+    assert f"{read[0].magnitude.max():.3g}" in said["asked"]
+    assert said["asked json"] == said["usual json"]
+    assert Path("asked.csv").read_bytes() == Path("usual.csv").read_bytes()
 
 
 def test_places_on_storeys_level_points_and_newmark(shaken):

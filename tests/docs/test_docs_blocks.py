@@ -9,6 +9,7 @@ import pytest
 import typer.main
 from typer.testing import CliRunner
 
+import trundle
 from trundle.cli.app import app
 from trundle.study_file.read import read_text
 
@@ -119,6 +120,24 @@ def test_links_lead_to_files():
     found = list(links())
     assert len(found) > 30
     assert not [f"{page.name}: {link}" for page, link in found if not (page.parent / link).exists()]
+
+
+TEXTS = [path for path in (ROOT / "docs").rglob("*.md") if "generated" not in path.parts]
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: path.stem)
+def test_nothing_that_is_written_is_left_out_or_shown_raw(path):
+    """A line that begins with % is a remark to the builder; a formula at a cell's beginning is none if its end is a number."""
+    lines = re.sub(r"```.*?```", "", path.read_text("utf-8"), flags=re.DOTALL).splitlines()
+    assert [line for line in lines if line.startswith("%")] == []
+    cells = [cell.strip() for line in lines if line.startswith("|") for cell in line.split("|")]
+    assert [cell for cell in cells if re.match(r"\$.*\d$", cell)] == []
+    assert [line for line in lines if re.search(r"\(docs/[a-z_-]+\.md\)", line)] == []
+
+
+def test_the_wheel_that_the_first_page_installs_is_this_version():
+    text = (ROOT / "docs" / "get_started.md").read_text("utf-8")
+    assert set(re.findall(r"trundle-([\d.]+)-py3", text)) == {trundle.__version__}
 
 
 def shown(number):

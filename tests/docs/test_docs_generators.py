@@ -298,6 +298,37 @@ def test_sizes_of_brackets_are_the_browsers():
     assert mathml.as_mathml(r"\Big[ a \bigr)", block=False).count("<mo") == 2
 
 
+def test_a_fraction_without_braces_has_two_numbers():
+    text = "".join(mathml.as_mathml(r"\tfrac12 G", block=False).split())
+    assert "<mn>1</mn><mn>2</mn></mfrac>" in text
+
+
+def test_an_accented_letter_has_its_index_beside_it():
+    """A sum keeps what stands below and above it."""
+    text = "".join(mathml.as_mathml(r"\sum_i^n \dot y_j", block=True).split())
+    assert '<msub><moveraccent="true"><mi>y</mi>' in text
+    assert "</mover><mi>j</mi></msub>" in text
+    assert text.count("<munderover") == 1
+
+
+def test_single_limits_have_no_range_that_never_ends():
+    """0.3 gal hold at any frequency; those of a stepper from 1 to 100 Hz."""
+    limits = [library_pages._limits(find_criterion(name)) for name in ("0.3 gal", "stepper-B")]
+    assert limits == ["0.3 gal", "0.1 gal, 1 to 100 Hz"]
+
+
+def test_a_star_is_escaped_in_words_and_kept_in_code():
+    assert (
+        api_pages._plain("Write ``figures/*.png``, of *x*.") == r"Write `figures/*.png`, of \*x\*."
+    )
+
+
+def test_an_option_in_a_sentence_is_no_dash():
+    """Two strokes would be set as one dash."""
+    page = command_pages._page("assess", dict(command_pages.commands())["assess"])
+    assert "else `--unit` and `--rate` do" in page
+
+
 def test_a_formula_that_is_not_understood_is_refused():
     with pytest.raises(Exception, match="nosuch"):
         mathml.as_mathml(r"\nosuch{x}", block=False)

@@ -5,6 +5,7 @@ import os
 import pickle
 import shutil
 import struct
+import tracemalloc
 import warnings
 from pathlib import Path
 
@@ -169,6 +170,19 @@ def test_a_pipe_or_a_device_is_no_record(tmp_path, name):
         read_record(tmp_path / name, RecordOptions(unit="m/s2"))
     with pytest.raises(InputError, match="device or a pipe"):
         read_record(Path("/dev/zero"), RecordOptions(unit="m/s2"))
+
+
+def test_a_long_record_is_held_twice_at_most(tmp_path):
+    """Numbers of two bytes become eight; with the file and one channel looked at: below 2.6 times."""
+    path, full = tmp_path / "long.wav", "20 m/s2"
+    counts = np.random.default_rng(1).integers(-30000, 30000, (500_000, 6), dtype=np.int16)
+    wavfile.write(path, 500, counts)
+    tracemalloc.start()
+    record = read_record(path, RecordOptions(full_scale=full))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    np.testing.assert_array_equal(record.samples, 20.0 * (counts.T / 32768.0))
+    assert peak < 2.6 * record.samples.nbytes
 
 
 def test_a_wav_file_cut_short_is_no_record(tmp_path):

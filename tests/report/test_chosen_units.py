@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hand_made import Page, study_of
+from hand_made import Page, result_of, study_of
 from test_footfall_figures import found_of
 from test_mitigation_figures import by_place, sweep_of
 from test_record_page import TIME, record_of
@@ -19,6 +19,7 @@ from trundle.report import write_mitigation_report, write_record_report
 from trundle.report.figures import footfall, record
 from trundle.report.pages.footfall import write_footfall
 from trundle.report.pages.record import record_page
+from trundle.report.pages.study import _render
 from trundle.study import ReportPlan
 from trundle.views.footfall import worst_rows
 
@@ -64,6 +65,21 @@ def test_numbers_of_a_page_in_inches_are_those_of_a_hand(folder, result):
     assert float(numbers["peak acceleration [in/s2]"]) == pytest.approx(0.0989, rel=0.02)
     rms = np.sqrt(np.mean(result.record.samples[0] ** 2)) / 25.4e-3
     assert float(numbers["record RMS velocity [in/s]"]) == pytest.approx(rms, rel=0.02)
+
+
+def test_limits_stand_in_the_units_of_the_page():
+    """VC-A is 50 um/s at 8 Hz, 1.969e-3 in/s; 0.3 gal are 3 / 25.4 in/s2. No title has a unit."""
+    curves = [find_criterion(name) for name in ("VC-A", "0.3 gal")]
+    text = record_page(assess_record(record_of(), curves), [], INCHES)
+    assert [row["limit"] for row in Page(text).rows("criteria")] == [
+        "0.003937 in/s at 4 Hz, 0.001969 in/s at 8 Hz, 0.001969 in/s at 80 Hz", "0.1181 in/s2",
+    ]  # fmt: skip
+    assert not USUAL_UNITS.search(text)
+    study = study_of(ASKED.format("in/s2"), ('curves = ["VC-A"]', 'curves = ["VC-A", "0.3 gal"]'))
+    page = Page(_render(result_of(study), []))
+    (table,) = [t for t in page.tables["inputs"] if t[0][0] == "criterion"]
+    assert [row[1] for row in table[1:]] == [row["limit"] for row in Page(text).rows("criteria")]
+    assert not USUAL_UNITS.search(page.said("verdict"))
 
 
 def test_an_event_is_told_in_inches():

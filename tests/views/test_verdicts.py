@@ -136,7 +136,8 @@ def test_an_axle_beyond_the_floor_is_told_from_a_vehicle_that_has_left(study):
     on = int(np.sum((16.0 + 2 / 3 - setback >= 0.0) & (16.0 + 2 / 3 - setback <= 12.0)))
     assert 0 < on < len(setback)
     said = line_of(study, verdict(WIDE, time=4.0))["where"]
-    assert said == f"4.0 s, main's front axle is off, {on} wheels are on the floor"
+    counted = "1 wheel is" if on == 1 else f"{on} wheels are"
+    assert said == f"4.0 s, main's front axle is off, {counted} on the floor"
     assert line_of(study, verdict(WIDE, time=60.0))["where"] == "60.0 s, main is off the floor"
 
 

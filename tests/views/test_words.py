@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from made_results import SECOND, curve, made_study, verdict
+from trundle.criteria import find_criterion
 from trundle.road import RoadClass
+from trundle.study import ReportPlan
 from trundle.views.words import (
     between,
     hertz,
+    limit_words,
     rank,
     road_words,
     roughest_words,
@@ -24,6 +27,22 @@ from trundle.views.words import (
 @pytest.fixture(scope="module")
 def study():
     return made_study(SECOND)
+
+
+@pytest.mark.parametrize(
+    ("name", "usual", "asked"),
+    [
+        ("VC-A", "100 um/s at 4 Hz, 50 um/s at 8 Hz, 50 um/s at 80 Hz",
+         "0.003937 in/s at 4 Hz, 0.001969 in/s at 8 Hz, 0.001969 in/s at 80 Hz"),
+        ("precision-isolated", "0.3 gal", "0.3059 mg"),
+        ("R-office", "4", "4"),
+    ],
+)  # fmt: skip
+def test_a_limit_is_told_in_the_units_of_a_report(name, usual, asked):
+    """An inch has 25400 um; 3 mm/s2 are 3 / 9.80665 thousandths of gravity; a factor has no unit."""
+    criterion = find_criterion(name)
+    assert limit_words(criterion) == usual
+    assert limit_words(criterion, ReportPlan(velocity="in/s", acceleration="mg")) == asked
 
 
 def test_a_range_is_of_the_runs_in_the_unit():

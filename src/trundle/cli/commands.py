@@ -14,7 +14,7 @@ from trundle.cli.saying import say
 from trundle.cli.screen import print_table, progress_bar
 from trundle.cli.show import say_json
 from trundle.cli.sketch import plan_sketch
-from trundle.criteria import BY_FREQUENCY, Criterion, all_criteria
+from trundle.criteria import all_criteria
 from trundle.errors import InputError
 from trundle.run.estimate import estimate_of
 from trundle.run.parts import with_kept_parts
@@ -22,7 +22,7 @@ from trundle.study.assumptions import early_end_warnings
 from trundle.study.doubts import study_doubts
 from trundle.study.model import Study
 from trundle.study_file.build import load_study
-from trundle.units import GAL, MICROMETRE_PER_SECOND
+from trundle.views.words import limit_words
 
 _HIGHEST = 2e3  # Hz
 
@@ -158,7 +158,7 @@ def criteria(*, as_json: bool = False) -> None:
             (
                 criterion.name,
                 ", ".join(criterion.aliases),
-                _corners(criterion),
+                limit_words(criterion),
                 criterion.quantity.replace("_", " "),
                 criterion.axis,
             )
@@ -168,24 +168,6 @@ def criteria(*, as_json: bool = False) -> None:
     )
     for source, confidence in dict.fromkeys((c.source, c.confidence) for c in all_criteria()):
         say(f"source: {source}\n        confidence: {confidence}")
-
-
-_SHOWN: dict[str, tuple[str, float]] = {
-    "band_rms_velocity": ("um/s", MICROMETRE_PER_SECOND),
-    "band_rms_displacement": ("um", 1e-6),
-    "response_factor": ("", 1.0),
-    "vdv": ("m/s^1.75", 1.0),
-}
-
-
-def _corners(criterion: Criterion) -> str:
-    unit, scale = _SHOWN.get(criterion.quantity, ("gal", GAL))
-    if criterion.quantity not in BY_FREQUENCY:
-        return f"{criterion.limits[0] / scale:g} {unit}".rstrip()
-    return ", ".join(
-        f"{limit / scale:.4g} {unit} at {f:g} Hz"
-        for f, limit in zip(criterion.frequencies, criterion.limits, strict=True)
-    )
 
 
 def _frequency(text: str) -> float:

@@ -67,15 +67,15 @@ def transfer(path: Path, asked: Asked, *, show: Show = "tables") -> None:
             study, loads, points, lines, method=method, progress=lambda s: tell("modes", 0.9 * s)
         )
         tell("transfer functions", 1.0)
-    some = curves(found, quantity)
+    some, read = curves(found, quantity), curves(found, quantity, study.report)
     title = f"{study.title}: {quantity}, method {method.name}"
-    _write(asked, some, quantity, title)
+    _write(asked, some, quantity, read, title)
     doubts = [*map(str, found.doubts), *_isolated(study, {**loads, **points})]
     if show == "json":
         say_json(_data(asked, some, quantity, method, doubts))
         return
     if show == "tables":
-        _print(title, some)
+        _print(title, read)
     for doubt in doubts:
         warn(doubt, show)
     if show == "tables":
@@ -151,15 +151,17 @@ def _isolated(study: Study, places: Mapping[str, Spot]) -> list[str]:
     ]
 
 
-def _write(asked: Asked, some: list[Curve], quantity: Quantity, title: str) -> None:
-    """Write table and picture; neither appears before both are whole."""
+def _write(
+    asked: Asked, some: list[Curve], quantity: Quantity, read: list[Curve], title: str
+) -> None:
+    """Write table and picture, each in its units; neither appears before both are whole."""
     with ExitStack() as stack:
         if asked.out is not None:
             aside = stack.enter_context(written_aside("--out", asked.out))
             write_csv(aside, heading(quantity), rows(some))
         if asked.figure is not None:
             _draw(
-                stack.enter_context(written_aside("--figure", asked.figure)), some, quantity, title
+                stack.enter_context(written_aside("--figure", asked.figure)), read, quantity, title
             )
 
 

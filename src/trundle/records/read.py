@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 
+from trundle._typing import Array
 from trundle.errors import FitnessWarning, InputError
 from trundle.records.channels import choose
 from trundle.records.foreign import foreign
@@ -54,6 +56,17 @@ class RecordOptions:
     start: str = ""
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Motion:
+    """The channels that can be used, in SI, and what is said of the others."""
+
+    samples: Float[Array, "channels steps"]
+    quantity: RecordQuantity
+    names: tuple[str, ...]
+    axes: tuple[Axis, ...]
+    notes: tuple[FitnessWarning, ...]
+
+
 @dataclass(frozen=True, kw_only=True)
 class _Channel:
     """One channel in SI, or why it is passed over."""
@@ -80,6 +93,11 @@ def read_record(path: Path, options: RecordOptions) -> Record:
     ------
     InputError
         A file that cannot be read, has gaps or uneven time stamps, or whose unit is not known.
+
+    Notes
+    -----
+    Long records are large: the file's bytes and the samples in its units are let go as soon as
+    nothing asks for them, so that two copies of the samples are held at most.
     """
     data = _bytes_of(path)
     kind = format_of(data)
@@ -89,13 +107,25 @@ def read_record(path: Path, options: RecordOptions) -> Record:
         raise InputError(f"{path}: --full-scale says the unit too; leave --unit out")
     stated, begin = _stated_rate(options.rate), _stated_start(options.start)
     raw = choose(_raw(data, path, options, stated), options.channel, str(path))
+    del data
     if raw.whole and not options.full_scale:
         raise InputError(
             f"{path}: its numbers are shares of a full scale; say what that is: "
             "--full-scale '20 m/s2', or in volts with a --sensitivity"
         )
     rate = _rate(raw, stated, path)
-    return _record(replace(raw, begin=begin or raw.begin), rate, options, path)
+    motion, begin = _motion(raw, rate, options, path), begin or raw.begin
+    del raw
+    return Record(
+        samples=motion.samples,
+        sampling_frequency=rate,
+        quantity=motion.quantity,
+        channel_names=motion.names,
+        source="".join(c if c.isprintable() else "?" for c in path.name),
+        axes=motion.axes,
+        notes=motion.notes,
+        begin=begin,
+    )
 
 
 def _stated_start(text: str) -> datetime | None:
@@ -138,7 +168,7 @@ def _bytes_of(path: Path) -> bytes:
             if size > _LARGEST_TEXT and format_of(file.read(512)) is None:
                 raise InputError(f"{path}: a text is at most 300 MB; cut it into events")
             file.seek(0)
-            return file.read(_LARGEST + 1)
+            return file.read(size + 1)  # as much as is asked for is set aside, read or not
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror or error})") from None
 
@@ -166,7 +196,8 @@ def _rate(raw: RawRecord, stated: float | None, path: Path) -> float:
     return float(raw.rate)
 
 
-def _record(raw: RawRecord, rate: float, options: RecordOptions, path: Path) -> Record:
+def _motion(raw: RawRecord, rate: float, options: RecordOptions, path: Path) -> _Motion:
+    """Return the channels in SI that can be used; refuse a file of which none can."""
     channels = [_channel(raw, i, options, rate) for i in range(len(raw.names))]
     sound = [i for i, one in enumerate(channels) if not one.problem]
     if not sound:
@@ -183,15 +214,15 @@ def _record(raw: RawRecord, rate: float, options: RecordOptions, path: Path) -> 
         for i, one in enumerate(channels)
         if one.problem
     ]
-    return Record(
-        samples=np.stack([channels[i].scale * raw.samples[i] for i in sound]),
-        sampling_frequency=rate,
+    samples = np.empty((len(sound), np.shape(raw.samples)[1]))
+    for row, i in zip(samples, sound, strict=True):
+        np.multiply(channels[i].scale, raw.samples[i], out=row)
+    return _Motion(
+        samples=samples,
         quantity=quantities.pop(),
-        channel_names=tuple(raw.names[i] for i in sound),
-        source="".join(c if c.isprintable() else "?" for c in path.name),
+        names=tuple(raw.names[i] for i in sound),
         axes=tuple(_axis(axes[i], raw.names[i]) for i in sound),
         notes=tuple(notes),
-        begin=raw.begin,
     )
 
 

@@ -11,7 +11,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from trundle._progress import Tell, silent
 from trundle.report.canvas import Drawing
-from trundle.views.words import between, hertz, margin_words, rank, written
+from trundle.views.words import between, hertz, limit_words, margin_words, rank, written
 
 __all__ = ["Picture", "embedded", "template"]
 
@@ -33,6 +33,7 @@ def template(name: str) -> Template:
     environment.filters["margin"] = margin_words
     environment.filters["between"] = between
     environment.filters["hertz"] = hertz
+    environment.filters["limit"] = limit_words
     return environment.get_template(name)
 
 

@@ -11,6 +11,9 @@ from jaxtyping import Complex, Float
 
 from trundle._typing import Array
 from trundle.simulate import TransferFunctions
+from trundle.study.report_plan import ReportPlan
+from trundle.units import PRINTED
+from trundle.views.words import USUAL
 
 __all__ = ["HEADING", "Curve", "Peak", "Quantity", "curves", "heading", "largest_peaks", "rows"]
 
@@ -22,6 +25,13 @@ _UNITS: dict[Quantity, tuple[str, float]] = {
     "mobility": ("(um/s)/N", 1e-6),
     "accelerance": ("(mm/s2)/N", 1e-3),
 }
+"""Units of files, and of people whose study asks for none."""
+_MOTION: dict[Quantity, str] = {
+    "receptance": "displacement",
+    "mobility": "velocity",
+    "accelerance": "acceleration",
+}
+"""Of what a study's report chooses the unit."""
 HEADING = ("from", "to", "frequency [Hz]", "real", "imaginary", "magnitude", "phase [deg]")
 """Columns of the table of a file; three of them have the quantity's unit."""
 
@@ -82,9 +92,21 @@ class Peak:
     at_end: bool
 
 
-def curves(functions: TransferFunctions, quantity: Quantity) -> list[Curve]:
-    """Return every transfer function, load by load."""
-    unit, scale = _UNITS[quantity]
+def curves(
+    functions: TransferFunctions, quantity: Quantity, report: ReportPlan = USUAL
+) -> list[Curve]:
+    """Return every transfer function, load by load.
+
+    Parameters
+    ----------
+    functions : TransferFunctions
+        What was found.
+    quantity : Quantity
+        Displacement, velocity or acceleration over force.
+    report : ReportPlan
+        Units that are asked for by name; where the motion's is not, that of `heading`.
+    """
+    unit, scale = _unit(quantity, report)
     values = getattr(functions, quantity) / scale
     return [
         Curve(
@@ -97,6 +119,15 @@ def curves(functions: TransferFunctions, quantity: Quantity) -> list[Curve]:
         for i, load in enumerate(functions.load_names)
         for j, point in enumerate(functions.point_names)
     ]
+
+
+def _unit(quantity: Quantity, report: ReportPlan) -> tuple[str, float]:
+    """Return the unit that people read a quantity in, and its size in SI."""
+    motion = _MOTION[quantity]
+    if motion not in report.chosen:
+        return _UNITS[quantity]
+    unit = getattr(report, motion)
+    return (f"({unit})/N" if "/" in unit else f"{unit}/N"), PRINTED[unit]
 
 
 def largest_peaks(curve: Curve, n: int = 3) -> list[Peak]:
@@ -126,7 +157,7 @@ def largest_peaks(curve: Curve, n: int = 3) -> list[Peak]:
 
 
 def heading(quantity: Quantity) -> tuple[str, ...]:
-    """Return the columns of `rows`, with their units."""
+    """Return the columns of a file's `rows`, with units that are the same whatever people read."""
     unit = _UNITS[quantity][0]
     with_unit = {"real", "imaginary", "magnitude"}
     return tuple(f"{name} [{unit}]" if name in with_unit else name for name in HEADING)

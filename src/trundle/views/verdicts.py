@@ -127,7 +127,8 @@ def _where(result: StudyResult, key: CellKey, verdict: Verdict | None) -> str:
         if place is not None
         else f"{name} is off the floor"
         if not on_floor[name]
-        else f"{name}'s front axle is off, {on_floor[name]} wheels are on the floor"
+        else f"{name}'s front axle is off, {on_floor[name]} "
+        f"{'wheel is' if on_floor[name] == 1 else 'wheels are'} on the floor"
         for name, place in places.items()
     ]
     return f"{verdict.time:.1f} s, {', '.join(there)}"

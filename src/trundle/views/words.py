@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trundle.criteria import Verdict
+from trundle.criteria import BY_FREQUENCY, Criterion, Verdict
 from trundle.criteria.verdict import frequency_name
 from trundle.road import CLASS_NAMES, RoadClass, class_limits
 from trundle.signals import Averaging
@@ -17,6 +17,7 @@ __all__ = [
     "Range",
     "between",
     "hertz",
+    "limit_words",
     "margin_words",
     "rank",
     "road_words",
@@ -74,6 +75,26 @@ def shown(units: str, report: ReportPlan = USUAL) -> tuple[str, float]:
     if units in asked:
         return asked[units], PRINTED[asked[units]]
     return {"m/s1.75": ("m/s^1.75", 1.0)}.get(units, (units, 1.0))
+
+
+_LIMITED = {
+    "band_rms_velocity": "m/s",
+    "band_rms_displacement": "m",
+    "response_factor": "",
+    "vdv": "m/s1.75",
+}
+"""SI unit of what a criterion limits; of all that is not here, that of acceleration."""
+
+
+def limit_words(criterion: Criterion, report: ReportPlan = USUAL) -> str:
+    """Say what a criterion allows at each of its corners, in the units of a report."""
+    unit, size = shown(_LIMITED.get(criterion.quantity, "m/s2"), report)
+    if criterion.quantity not in BY_FREQUENCY:
+        return f"{criterion.limits[0] / size:.4g} {unit}".rstrip()
+    return ", ".join(
+        f"{limit / size:.4g} {unit} at {f:g} Hz"
+        for f, limit in zip(criterion.frequencies, criterion.limits, strict=True)
+    )
 
 
 def between(verdict: Verdict) -> str:

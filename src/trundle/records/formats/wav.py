@@ -48,9 +48,10 @@ def read_wav(data: bytes, path: Path) -> RawRecord:
     if whole:
         offset = 128.0 if samples.dtype == np.uint8 else 0.0
         full = 128.0 if samples.dtype == np.uint8 else -float(np.iinfo(samples.dtype).min)
-        samples = (samples - offset) / full
+        samples = samples - offset
+        samples /= full  # in place: of a long record a copy is large
     with np.errstate(invalid="ignore"):  # of damaged floats, which are found to be no numbers
-        samples = samples.astype(float)
+        samples = samples.astype(float, copy=False)
     return RawRecord(
         samples=samples,
         rate=float(rate),

@@ -23,7 +23,7 @@ from trundle.structure.building import Building
 from trundle.study.map_plan import MapGrid
 from trundle.study.model import Study
 from trundle.views.map import MapView, class_limits_of, class_names, class_ranks, map_views
-from trundle.views.words import shown
+from trundle.views.words import shown, written
 
 __all__ = ["draw_building", "draw_image", "draw_panels", "drawings"]
 
@@ -92,7 +92,7 @@ def _worst_words(study: Study, views: list[MapView], quantity: Quantity) -> str:
         return ""
     at = int(np.nanargmax(values))
     x, y = best.grid.xy[at]
-    named = f"{values[at] / scale:.3g}" + (f" {unit}" if unit != "1" else "")
+    named = written(values[at] / scale) + (f" {unit}" if unit != "1" else "")
     return f"Largest: {named} at ({x:.1f}, {y:.1f}) m, {best.title}."
 
 

@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from studies import GOOD, LIBRARY
+from studies import BUILDING, GOOD, LIBRARY
 from trundle.errors import FitnessWarning, InputError
+from trundle.mitigate import mitigation
 from trundle.mitigate.changes import Change, each_change, every_combination
 from trundle.mitigate.mitigation import resonance_speeds, try_changes
 from trundle.results.parts import ChangesPart
@@ -74,6 +75,20 @@ def test_a_combination_is_what_its_own_study_says(tmp_path):
         assert found.status == own.status
     margins = sweep.margin("as in the study", "main", "C", "tool", "VC-A")
     assert margins[0] == pytest.approx(outcome(sweep, "as in the study", speeds[0], "C").margin)
+
+
+def test_a_building_of_which_answers_are_asked_is_changed_by_its_answers(tmp_path, monkeypatch):
+    """What is changed in nothing is what its own study says, to the last bit, near and far alike;
+    nobody finds all modes, and no speed is told to be one of resonance."""
+    parts = '\n[parts]\nnodes = 100\nband = 3\nresponse_tolerance = 0.05\nnear = "8 m"\n'
+    text = BUILDING + parts + '\n[criteria]\nmethod = "coupled"\ncurves = ["VC-A"]\n'
+    monkeypatch.setattr(mitigation, "modes_of", None)
+    study = study_of(tmp_path, text)
+    sweep = try_changes(study, changes=[Change()], speeds=[20 * KMH], roads=["B"], runs=study.runs)
+    (found,) = sweep.outcomes
+    ((_, own),) = run_study(study).verdicts.items()
+    assert [v.margin for v in found.verdicts] == [v.margin for v in own]
+    assert not any(sweep.resonances.values())
 
 
 @pytest.mark.longest

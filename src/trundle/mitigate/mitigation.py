@@ -20,14 +20,17 @@ from trundle.mitigate.outcome import Outcome, Sweep
 from trundle.mitigate.plan import Combination, assessed, plan_changes
 from trundle.response import few_runs_warnings, level_warnings
 from trundle.results.parts import ChangesPart, RunsPart, joined
+from trundle.run.answering import answers_to_jobs, asks_for_answers
 from trundle.run.checkpoint import InMemory, PieceStore
 from trundle.run.estimate import mode_seconds, size_of
 from trundle.run.executor import Batch, Executor, carry_out
 from trundle.run.floors import Floors
-from trundle.run.jobs import prepare_job
+from trundle.run.jobs import Job, prepare_job
 from trundle.run.mode_cache import modes_of
+from trundle.run.parts import near_to_jobs, with_kept_parts
 from trundle.run.progress import Bar
 from trundle.run.threads import Threads
+from trundle.structure import Structure
 from trundle.study.model import Study, directions
 from trundle.vehicle import Vehicle
 
@@ -85,9 +88,11 @@ def try_changes(
             of_slab = list(group)
             slab = changed_study(study, Change(slab_thickness=thickness))
             bar.begin(f"{of_slab[0].changes[0].label}: modes of the floor")
-            modes = _modes(slab)
+            jobs = [one.job for one in of_slab]
+            floor = near_to_jobs(with_kept_parts(slab.floor, who), jobs)
+            modes = _modes(slab, floor, jobs, who)
             bar.finished([_name(thickness)])
-            carry_out(_batches(slab, of_slab, modes), who, store, bar)
+            carry_out(_batches(slab, floor, of_slab, modes), who, store, bar)
             resonances |= _resonances(study, of_slab, modes, speeds)
     tell("done", 1.0)
     found: dict[tuple[str, float, str], list[Outcome]] = {}
@@ -171,18 +176,22 @@ def _bar(study: Study, planned: Sequence[Combination], tell: Tell) -> Bar:
     return Bar(tell, 0.0, costs)
 
 
-def _modes(slab: Study) -> Modes | None:
-    """Find the modes of a slab, as far as the assessed method keeps them."""
+def _modes(slab: Study, floor: Structure, jobs: Sequence[Job], who: Executor) -> Modes | None:
+    """Find the modes of a slab as far as the assessed method keeps them, or what answers."""
     f_max = assessed(slab)[1].interaction.integration.f_max
     if f_max is None:
         return None
+    if asks_for_answers(floor):
+        return answers_to_jobs(floor, jobs, f_max=f_max, executor=who)
     with repeatable():
-        return modes_of(slab.floor, f_max=f_max)
+        return modes_of(floor, f_max=f_max, executor=who)
 
 
-def _batches(slab: Study, combinations: Sequence[Combination], modes: Modes | None) -> list[Batch]:
+def _batches(
+    slab: Study, floor: Structure, combinations: Sequence[Combination], modes: Modes | None
+) -> list[Batch]:
     """Return the tasks of the combinations of one slab, ready to be laid out."""
-    floors = Floors(slab.floor, modes, [one.job for one in combinations])
+    floors = Floors(floor, modes, [one.job for one in combinations])
     return [
         Batch(
             label=one.label,
@@ -199,12 +208,13 @@ def _resonances(
     study: Study, combinations: Sequence[Combination], modes: Modes | None, speeds: Sequence[float]
 ) -> dict[tuple[str, str], tuple[float, ...]]:
     """Return by change and case the speeds at which axles pass in step with the first mode."""
+    known = None if modes is None or modes.answering else modes  # combinations are no modes
     found: dict[tuple[str, str], tuple[float, ...]] = {}
     for one in combinations:
         for change in one.changes:
             drives = changed_study(study, Change(vehicle=change.vehicle)).drives
-            vehicles = [drives[n].vehicle for n in one.case.routes if n in drives] if modes else []
-            f1 = float(modes.frequencies[0]) if modes else np.nan
+            vehicles = [drives[n].vehicle for n in one.case.routes if n in drives] if known else []
+            f1 = float(known.frequencies[0]) if known else np.nan
             marked = {v for vehicle in vehicles for v in resonance_speeds(vehicle, f1, speeds)}
             found[change.label, one.case.name] = tuple(sorted(marked))
     return found

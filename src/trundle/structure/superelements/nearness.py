@@ -50,7 +50,7 @@ class Nearness:
             near=positive("near", self.near),
         )
 
-    def shares(self, pieces: Sequence[Float[Array, "nodes 3"]]) -> Float[Array, " pieces"]:
+    def shares(self, pieces: Sequence[Float[Array, "_ 3"]]) -> Float[Array, " pieces"]:
         """Return the share of the whole band to which each piece is kept.
 
         Parameters

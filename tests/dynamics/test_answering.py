@@ -99,6 +99,46 @@ def norms(block):
     return np.linalg.norm(block, axis=1)
 
 
+@pytest.mark.parametrize("link", [0.1, 0.001])
+def test_a_reading_that_little_comes_to_is_answered_too(link):
+    """In a second membrane on two weak springs, as a storey below: what moves it is a small part of
+    how it answers, and must not be left out as small. Against sparse solutions, within what is
+    told."""
+    n = 20
+    one, other = grid(n), grid(n, seed=5)
+    stiffness = sparse.block_diag([one.stiffness, other.stiffness]).tolil()
+    spring = link * abs(one.stiffness).max()
+    for p in (3 * n + 15, 12 * n + 4):
+        for i, j, sign in (
+            (p, p, 1),
+            (p, p + n * n, -1),
+            (p + n * n, p, -1),
+            (p + n * n, p + n * n, 1),
+        ):
+            stiffness[i, j] += sign * spring
+    mass = sparse.csc_array(sparse.block_diag([one.mass, other.mass]))
+    pencil = SparsePencil(mass=mass, stiffness=sparse.csc_array(stiffness))
+    none = sparse.csr_array((0, n * n))
+    questions = Questions(
+        pushed=sparse.csr_array(
+            sparse.hstack([rows([(3, j) for j in range(4, 10)], n), 0 * one.mass[:6]])
+        ),
+        read=sparse.csr_array(sparse.hstack([0 * one.mass[:1], rows([(16, 16)], n)])),
+        mapped=sparse.csr_array(sparse.hstack([none, none])),
+    )
+    found = answering_modes(pencil, questions, constant, f_max=F_MAX, tolerance=0.1)
+    assert found.error <= 0.1
+    loads, off, size = questions.read.T.toarray(), [], []
+    for f in np.geomspace(0.4, F_MAX, 60):
+        omega = 2 * np.pi * f
+        true = questions.pushed @ solved(pencil, omega, loads)
+        ours = told_by(pencil, found.modes, omega, questions.pushed, loads)
+        off.append(omega * np.linalg.norm(ours - true))
+        size.append(omega * np.linalg.norm(true))
+    worst = np.max(off / np.maximum(size, 0.01 * max(size)))
+    assert worst <= 1.5 * found.error
+
+
 def test_a_finer_tolerance_looks_at_more_frequencies_and_is_met():
     """Errors fall as the answers at more frequencies are taken in."""
     pencil, questions = grid(), asked()

@@ -49,6 +49,9 @@ _COARSE = 8.0  # first spacing of frequencies, against the damping ratio: four r
 _FINEST = 0.2  # spacing at which the search is given up
 _LEAST_RATIO = 0.002  # of the ratio, for the spacing
 _SHARE = 0.05  # of the tolerance, below which a new direction is left out
+_FINER = 0.3  # of that share, each time that gaps are halved again: what is missed is small
+_ROUNDS = 2  # after which that begins
+_LEAST_KEPT = 3e-6  # of answers, below which directions are round-off
 _SHARE_MAPPED = 0.001  # the same with maps: nothing is solved from their end, and they may be far
 _FLOOR = 0.01  # of the loudest answer: what is 40 dB below it need not be known as well
 _HALFWAY = 20.0  # frequencies after which half of the work is done, as progress is told
@@ -135,7 +138,7 @@ def answering_modes(
         pencil, questions, rest, highest=search.shift(search.high), tolerance=tolerance
     )
     span, told = _Span(n_coordinates=pencil.mass.shape[0]), progress or _nobody
-    lines, known, error = search.first(), np.zeros(0), 0.0
+    lines, known, error, rounds = search.first(), np.zeros(0), 0.0, 0
     share = _SHARE_MAPPED if questions.mapped.shape[0] else _SHARE
     loudest = np.zeros((2, enquiry.probed.shape[1]))
     while len(lines):
@@ -144,7 +147,7 @@ def answering_modes(
         shifts = [search.shift(omega) for omega in lines]
         for i, found in enumerate(answer_all(enquiry, shifts)):
             off[i], sizes[i] = lines[i] * enquiry.difference(basis, shifts[i], found)
-            span.take(enquiry, found, share * tolerance)
+            span.take(enquiry, found, max(share * tolerance, _LEAST_KEPT))
             told(1.0 - 0.5 ** ((len(known) + i + 1) / _HALFWAY))
         loudest = np.maximum(loudest, sizes.max(axis=0))
         errors = _largest(off, np.maximum(sizes, _FLOOR * loudest))
@@ -152,6 +155,7 @@ def answering_modes(
         passed = errors <= tolerance
         error = max(error, float(errors[passed].max(initial=0.0)))
         lines = search.next(known, lines if basis is None else lines[~passed])
+        share, rounds = share * (_FINER if rounds >= _ROUNDS else 1.0), rounds + 1
     omega, shapes = span.diagonal(pencil)
     modes = Modes(omega=omega, shapes=shapes, residuals=np.full(len(omega), error), f_max=f_max)
     return AnsweringModes(modes=modes, error=error, n_frequencies=len(known), n_below=n_below)

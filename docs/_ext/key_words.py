@@ -172,12 +172,12 @@ def default_of(info: FieldInfo) -> str:
         return ""
     if isinstance(value, bool):
         return f"`{str(value).lower()}`"
-    if isinstance(value, tuple):
-        return f"`[{', '.join(_one(part, info) for part in value)}]`"
     return f"`{_one(value, info)}`"
 
 
 def _one(value: Any, info: FieldInfo) -> str:
+    if isinstance(value, tuple):
+        return f"[{', '.join(_one(part, info) for part in value)}]"
     if isinstance(value, str):
         return f'"{value}"'
     unit = next((_unit(dimension) for dimension in _dimensions(info)), "")

@@ -8,6 +8,7 @@
 # make bench     speed, as ratios within one run
 # make dist      wheel and source archive in dist, checked as they would be published
 # make docs      the manual with all references, as HTML in build/docs; a warning is an error
+#                (make docs GALLERY=all runs every example for its picture, not the quick ones alone)
 PYTHON ?= python3
 BIN := .venv/bin
 
@@ -81,7 +82,7 @@ dist:
 	$(PYTHON) scripts/build_distributions.py
 
 docs: .venv/.ready-dev
-	$(BIN)/python -m sphinx -q -W --keep-going -j auto -b html -d build/docs-kept docs build/docs
+	GALLERY=$(GALLERY) $(BIN)/python -m sphinx -q -W --keep-going -j auto -b html -d build/docs-kept docs build/docs
 	@echo "manual: build/docs/index.html"
 
 clean:

@@ -1,9 +1,14 @@
-"""Run the quick examples for the gallery, once for what they are: a picture and a sentence of each."""
+"""Run examples for the gallery, once for what they are: a picture and a sentence of each.
+
+The quick ones always; all that are studies where ``GALLERY=all`` stands in the environment, which
+takes most of an hour of processor time.
+"""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
@@ -18,7 +23,7 @@ from trundle.report.figures import class_plan, response
 from trundle.results.study_result import StudyResult
 from trundle.views.conclusions import concluded, conclusion_of_all
 
-__all__ = ["NOT_HERE", "QUICK", "Outcome", "outcome_of"]
+__all__ = ["NOT_HERE", "QUICK", "Outcome", "outcome_of", "runs_here"]
 
 _KEPT = ROOT / "build" / "docs-runs"
 
@@ -66,6 +71,12 @@ class Outcome:
     title: str
     sentence: str
     runs: int
+
+
+def runs_here(folder: Path) -> bool:
+    """Return whether a build runs an example."""
+    asked = os.environ.get("GALLERY") == "all"
+    return folder.name in QUICK or (asked and (folder / "study.toml").exists())
 
 
 def outcome_of(folder: Path, kept: Path = _KEPT) -> Outcome:

@@ -7,7 +7,7 @@ import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
-from example_runs import NOT_HERE, QUICK, outcome_of
+from example_runs import NOT_HERE, outcome_of, runs_here
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pages import DOCS, GENERATED, ROOT, code, write_page
@@ -84,8 +84,8 @@ def _entry(folder: Path) -> Iterator[str]:
 
 
 def _outcome(folder: Path) -> Iterator[str]:
-    """Give picture and conclusion of a quick example; of another, what runs it."""
-    if folder.name not in QUICK:
+    """Give picture and conclusion of an example that is run here; of another, what runs it."""
+    if not runs_here(folder):
         yield from _not_here(folder)
         return
     found = outcome_of(folder)

@@ -37,6 +37,16 @@ def test_every_example_is_run_by_the_build_or_says_by_what():
         assert (ROOT / "examples" / name / "study.toml").exists()
 
 
+def test_all_studies_are_run_where_that_is_asked_for(monkeypatch):
+    """Quick ones always; clusters and a script, which are no studies, never."""
+    folders = list(gallery.examples())
+    monkeypatch.delenv("GALLERY", raising=False)
+    assert {one.name for one in folders if example_runs.runs_here(one)} == set(example_runs.QUICK)
+    monkeypatch.setenv("GALLERY", "all")
+    not_run = {one.name for one in folders if not example_runs.runs_here(one)}
+    assert not_run == {"clusters", "quick_start"}
+
+
 @pytest.mark.parametrize("name", example_runs.NOT_HERE)
 def test_what_runs_another_example_names_it(name):
     said = example_runs.NOT_HERE[name]

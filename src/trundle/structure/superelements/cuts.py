@@ -18,9 +18,9 @@ from trundle._checks import frozen_array, set_frozen
 from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.elements.protocol import GROUND, Elements
-from trundle.structure.superelements.regions import Region, shares_by_region
+from trundle.structure.superelements.regions import Region, middles_of, shares_by_region
 
-__all__ = ["Cuts", "Share", "middles_of", "shares_in_halves", "shares_of"]
+__all__ = ["Cuts", "Share", "shares_in_halves", "shares_of"]
 
 _ON_PLANE = 1e-3  # m, within which an element lies in a plane of the cut
 
@@ -266,9 +266,3 @@ def shares_in_halves(
         Share(element=np.arange(len(one)), piece=one, weight=np.ones(len(one)))
         for one in np.split(label, ends)
     )
-
-
-def middles_of(nodes: Array, connectivity: Array) -> Array:
-    """Return the middle of each element's nodes [m], shape (n_elements, 3)."""
-    there = (connectivity != GROUND)[..., None]
-    return np.where(there, nodes[connectivity], 0.0).sum(axis=1) / there.sum(axis=1)

@@ -21,7 +21,7 @@ from trundle._typing import Array
 from trundle.errors import InputError
 from trundle.structure.elements.protocol import GROUND
 
-__all__ = ["Region", "shares_by_region"]
+__all__ = ["Region", "middles_of", "shares_by_region"]
 
 _ON_EDGE = 1e-3  # m, within which an element lies on an outline
 _ROUND = np.radians(13.0) + 0.25 * np.pi * np.arange(8)
@@ -89,6 +89,12 @@ class Region:
         return np.asarray(shapely.distance(edge, shapely.points(points[:, :2])) <= _ON_EDGE)
 
 
+def middles_of(nodes: Array, connectivity: Array) -> Array:
+    """Return the middle of each element's nodes [m], shape (n_elements, 3)."""
+    there = (connectivity != GROUND)[..., None]
+    return np.where(there, nodes[connectivity], 0.0).sum(axis=1) / there.sum(axis=1)
+
+
 def shares_by_region(
     nodes: Float[Array, "nodes 3"], connectivity: Array, regions: Sequence[Region]
 ) -> Float[Array, "elements regions_and_none"]:
@@ -104,9 +110,8 @@ def shares_by_region(
         None that overlap.
     """
     there = connectivity != GROUND
-    n_ends = there.sum(axis=1)
     xyz = nodes[connectivity]
-    middle = np.where(there[..., None], xyz, 0.0).sum(axis=1) / n_ends[:, None]
+    middle = middles_of(nodes, connectivity)
     on_edge, levels = _lying(xyz, there, middle, regions)
     low = np.where(there, xyz[..., 2], np.inf).min(axis=1)
     high = np.where(there, xyz[..., 2], -np.inf).max(axis=1)

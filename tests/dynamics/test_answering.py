@@ -8,6 +8,7 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from trundle.dynamics import (
+    Enquiry,
     Questions,
     SparsePencil,
     answering_modes,
@@ -92,6 +93,84 @@ def test_the_error_told_bounds_that_at_frequencies_nobody_looked_at(seed):
     loudest = np.max(size, axis=0)  # what is 40 dB below it is held against that
     worst = np.max(off / np.maximum(size, 0.01 * loudest))
     assert worst <= 1.5 * max(found.error, 0.005)
+
+
+def plate(n=N, *, f_first=0.6, seed=0):
+    """Return a grid whose frequencies rise with the square of the waves across it, as a slab's."""
+    one = grid(n, f_first=f_first, seed=seed)
+    square = one.stiffness @ one.stiffness
+    first = 2 * (2 - 2 * np.cos(np.pi / (n + 1)))
+    unit = (2 * np.pi * f_first) ** 2 / first  # of what the grid is a multiple
+    return SparsePencil(
+        mass=one.mass, stiffness=sparse.csc_array(square * (unit / first / unit**2))
+    )
+
+
+def side_by_side(pencils, link):
+    """Join equal masses of neighbours by springs, as joints between slabs do."""
+    stiffness = sparse.block_diag([one.stiffness for one in pencils]).tolil()
+    n = pencils[0].mass.shape[0]
+    spring = link * abs(pencils[0].stiffness).max()
+    for k in range(1, len(pencils)):
+        for p in range(0, n, 100):
+            a, b = (k - 1) * n + p, k * n + p
+            stiffness[a, a] += spring
+            stiffness[b, b] += spring
+            stiffness[a, b] -= spring
+            stiffness[b, a] -= spring
+    mass = sparse.csc_array(sparse.block_diag([one.mass for one in pencils]))
+    return SparsePencil(mass=mass, stiffness=sparse.csc_array(stiffness))
+
+
+def slabs():
+    """Return three slabs in a row whose first modes are at 0.6 Hz, and two lanes and three points.
+
+    All but a few of their 1200 modes lie below 100 Hz.
+    """
+    n, count = 20, 3
+    pencil = side_by_side([plate(n, seed=seed) for seed in range(count)], 0.02)
+    lanes = [(k * n + i, j) for k in range(count) for i in (3, 9) for j in range(1, n - 1)]
+    wide = (len(lanes) + 3, count * n * n)
+    at = [i * n + j for i, j in [*lanes, (15, 14), (n + 19, 17), (2 * n + 9, 9)]]
+    every = sparse.csr_array((np.ones(len(at)), (np.arange(len(at)), at)), shape=wide)
+    return pencil, Questions(pushed=every[:-3], read=every[-3:], mapped=every[:0])
+
+
+def test_a_hundred_times_the_first_mode_is_answered_as_well_as_twice():
+    """The static answer of the first modes is thousands of times what moves at 100 Hz, and nothing
+    there may be left out as small beside it. Against sparse solutions on lines placed anew, from
+    points to both lanes."""
+    pencil, questions = slabs()
+    found = answering_modes(pencil, questions, constant, f_max=100.0, tolerance=0.1)
+    assert found.error <= 0.1
+    pushed, loads, off, size = questions.pushed, questions.read.T.toarray(), [], []
+    for f in np.geomspace(0.4, 100.0, 40):
+        omega = 2 * np.pi * f
+        true = pushed @ solved(pencil, omega, loads)
+        ours = told_by(pencil, found.modes, omega, pushed, loads)
+        off.append(omega * np.linalg.norm(ours - true, axis=0))
+        size.append(omega * np.linalg.norm(true, axis=0))
+    worst = np.max(off / np.maximum(size, 0.01 * np.max(size, axis=0)))
+    assert worst <= found.error
+
+
+@pytest.mark.parametrize("f", [2.0, 6.0, 11.0])
+def test_forces_that_no_combination_holds_move_little_at_any_frequency(f):
+    """What random forces on both lanes have beside the combinations, as it moves the lanes beyond
+    its static answer, against all that these forces do there; sparse solutions."""
+    pencil, questions = slabs()
+    shifts = [(2 * np.pi * line) ** 2 / (1 + 2j * RATIO) for line in (12.0, 3.0, 0.75)]
+    rest = pencil.factorise(0.0)
+    enquiry = Enquiry.of(pencil, questions, rest, shifts=shifts, tolerance=0.1)
+    pushed = questions.pushed
+    patterns = pushed @ enquiry.forces[:, : enquiry.n_combined]  # each row sees one mass
+    assert patterns.shape[1] < pushed.shape[0]
+    drawn = np.random.default_rng(1).standard_normal((pushed.shape[0], 8))
+    left = drawn - patterns @ (patterns.T @ drawn)
+    omega = 2 * np.pi * f
+    moved = pushed @ (solved(pencil, omega, pushed.T @ left) - rest.solve(pushed.T @ left))
+    whole = pushed @ solved(pencil, omega, pushed.T @ drawn)
+    assert np.linalg.norm(moved) <= 0.1 * np.linalg.norm(whole)
 
 
 def norms(block):

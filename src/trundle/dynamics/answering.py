@@ -48,9 +48,9 @@ AnswerAll: TypeAlias = Callable[[Enquiry, Sequence[complex]], Iterator[Array]]
 _COARSE = 8.0  # first spacing of frequencies, against the damping ratio: four resonances wide
 _FINEST = 0.2  # spacing at which the search is given up
 _LEAST_RATIO = 0.002  # of the ratio, for the spacing
-_SHARE = 0.05  # of the tolerance, below which a new direction is left out
-_FINER = 0.3  # of that share, each time that gaps are halved again: what is missed is small
-_ROUNDS = 2  # after which that begins
+_APART = 4.0  # of frequencies about which patterns of forces are looked for
+_SHARE = 0.3  # of the tolerance, below which a new direction is left out
+_LEAST_COMING = 1e-3  # of what would come, below which a reading counts no more for it
 _LEAST_KEPT = 3e-6  # of answers, below which directions are round-off
 _SHARE_MAPPED = 0.001  # the same with maps: nothing is solved from their end, and they may be far
 _FLOOR = 0.01  # of the loudest answer: what is 40 dB below it need not be known as well
@@ -135,11 +135,11 @@ def answering_modes(
     low = 0.5 * min(_first_omega(pencil, rest), high)
     search = _Search(ratios=ratios, low=low, high=high)
     enquiry = Enquiry.of(
-        pencil, questions, rest, highest=search.shift(search.high), tolerance=tolerance
+        pencil, questions, rest, shifts=[*map(search.shift, search.few())], tolerance=tolerance
     )
     span, told = _Span(n_coordinates=pencil.mass.shape[0]), progress or _nobody
-    lines, known, error, rounds = search.first(), np.zeros(0), 0.0, 0
-    share = _SHARE_MAPPED if questions.mapped.shape[0] else _SHARE
+    lines, known, error = search.first(), np.zeros(0), 0.0
+    small = max(tolerance * (_SHARE_MAPPED if questions.mapped.shape[0] else _SHARE), _LEAST_KEPT)
     loudest = np.zeros((2, enquiry.probed.shape[1]))
     while len(lines):
         basis = span.diagonal(pencil) if len(known) else None
@@ -147,7 +147,7 @@ def answering_modes(
         shifts = [search.shift(omega) for omega in lines]
         for i, found in enumerate(answer_all(enquiry, shifts)):
             off[i], sizes[i] = lines[i] * enquiry.difference(basis, shifts[i], found)
-            span.take(enquiry, found, max(share * tolerance, _LEAST_KEPT))
+            span.take(enquiry, found, small)
             told(1.0 - 0.5 ** ((len(known) + i + 1) / _HALFWAY))
         loudest = np.maximum(loudest, sizes.max(axis=0))
         errors = _largest(off, np.maximum(sizes, _FLOOR * loudest))
@@ -155,7 +155,6 @@ def answering_modes(
         passed = errors <= tolerance
         error = max(error, float(errors[passed].max(initial=0.0)))
         lines = search.next(known, lines if basis is None else lines[~passed])
-        share, rounds = share * (_FINER if rounds >= _ROUNDS else 1.0), rounds + 1
     omega, shapes = span.diagonal(pencil)
     modes = Modes(omega=omega, shapes=shapes, residuals=np.full(len(omega), error), f_max=f_max)
     return AnsweringModes(modes=modes, error=error, n_frequencies=len(known), n_below=n_below)
@@ -178,6 +177,12 @@ class _Search:
         step = spacing_at_first(float(self.ratios(np.geomspace(self.low, self.high, 50)).min()))
         count = max(3, int(np.ceil(np.log(self.high / self.low) / step)) + 1)
         return np.geomspace(self.low, self.high, count)
+
+    def few(self) -> Array:
+        """Return frequencies about which patterns of forces are looked for, falling."""
+        return self.high * _APART ** -np.arange(
+            1.0 + np.log(self.high / self.low) // np.log(_APART)
+        )
 
     def next(self, known: Array, failed: Array) -> Array:
         """Return the middles of the gaps beside frequencies that failed."""
@@ -213,14 +218,24 @@ class _Span:
         self._loaded = np.empty_like(self._vectors)
 
     def take(self, enquiry: Enquiry, answers: Array, small: float) -> None:
-        """Take in the dynamic part of answers, but for directions that are small in it."""
-        moved = answers - enquiry.still
-        block = np.hstack([np.real(moved), np.imag(moved)])
+        """Take in the dynamic part of answers, but for directions that are small beside the whole.
+
+        Of the dynamic part most may be what low modes no longer follow: beside that whatever
+        moves at a high frequency would be small. Of a reading to which little comes it is small
+        directions that bring it: they count by so much more as less comes.
+        """
+        block = np.hstack([np.real(answers), np.imag(answers)])
         loaded = enquiry.pencil.mass @ block
         squares = np.einsum("ij,ij->j", block, loaded).reshape(2, -1).sum(axis=0)
-        # combinations as large as they are, every reading alike: one that is far counts too
-        squares[: enquiry.n_combined] = squares[: enquiry.n_combined].sum()
-        scale = np.tile(1.0 / np.sqrt(np.where(squares > 0.0, squares, 1.0)), 2)
+        block[:, : enquiry.still.shape[1]] -= enquiry.still
+        loaded[:, : enquiry.still.shape[1]] -= enquiry.still_loaded
+        few = enquiry.n_combined
+        squares[:few] = squares[:few].sum()  # combinations as large as they are
+        sizes = np.sqrt(np.where(squares > 0.0, squares, 1.0))
+        across = np.linalg.norm(enquiry.forces[:, :few].T @ answers, axis=0)
+        comes = across * sizes[0] / (sizes * np.linalg.norm(across[:few]))
+        comes[:few] = 1.0
+        scale = np.tile(1.0 / (sizes * np.clip(comes, _LEAST_COMING, 1.0)), 2)
         self._append(enquiry.pencil.mass, block * scale, loaded * scale, small**2)
 
     def _append(self, mass: Product, block: Array, loaded: Array, least: float) -> None:

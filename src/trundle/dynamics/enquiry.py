@@ -6,11 +6,14 @@ The dynamic part of an answer at a frequency, what it is beyond the static one,
 
 is smooth over a route: what only bends a slab under one wheel has gone. The many forces of a route
 are therefore few combinations, found from what a random motion does to all of them (Halko,
-Martinsson and Tropp, SIAM Review 53 (2011) 217-288).
+Martinsson and Tropp, SIAM Review 53 (2011) 217-288). What is small is told against the whole answer
+at its own frequency: static answers of the lowest modes are far larger than anything that moves at
+high frequencies, and all patterns there would be small beside them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -26,7 +29,7 @@ __all__ = ["Enquiry", "Questions"]
 _DRAWN = 160  # random motions by which the combinations of forces are found, at first
 _FILLED = 0.8  # of them, that may be needed before more are drawn
 _PROBES = 12  # random combinations of all forces by which errors are told
-_SHARE = 0.05  # of the tolerance, at which a combination of forces is small
+_SHARE = 0.2  # of the tolerance, at which a combination of forces is small
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,12 +83,14 @@ class Enquiry:
         questions: Questions,
         rest: Factor,
         *,
-        highest: complex,
+        shifts: Sequence[complex],
         tolerance: float,
     ) -> Enquiry:
-        """Find the combinations of what pushes that matter up to a shift."""
-        few = _combined(pencil, questions.pushed, rest, highest, _SHARE * tolerance)
-        return cls._of(pencil, questions, rest, few)
+        """Find the combinations of what pushes that matter at some shifts, and about them."""
+        small, pushed = _SHARE * tolerance, questions.pushed
+        told = [_patterns(pencil, pushed, rest, shift, small) for shift in shifts]
+        patterns, sizes, _ = np.linalg.svd(np.hstack(told), full_matrices=False)
+        return cls._of(pencil, questions, rest, pushed.T @ patterns[:, sizes > small])
 
     @classmethod
     def of_probes(cls, pencil: DampedPencil, questions: Questions, rest: Factor) -> Enquiry:
@@ -105,6 +110,11 @@ class Enquiry:
             still=rest.solve(forces),
             n_combined=few.shape[1],
         )
+
+    @cached_property
+    def still_loaded(self) -> Float[Array, "coordinates forces"]:
+        """The mass times the static answers."""
+        return self.pencil.mass @ self.still
 
     @property
     def probed(self) -> Float[Array, "coordinates probes"]:
@@ -162,18 +172,24 @@ class Enquiry:
         return self.pencil.factorise_damped(shift).solve(self.forces)
 
 
-def _combined(
-    pencil: DampedPencil, pushed: SparseMatrix, rest: Factor, highest: complex, small: float
-) -> Array:
-    """Return combinations of forces, so that the others move nothing to speak of."""
-    solver, drawn = pencil.factorise_damped(highest), _DRAWN
+def _patterns(
+    pencil: DampedPencil, pushed: SparseMatrix, rest: Factor, shift: complex, small: float
+) -> Float[Array, "pushed patterns"]:
+    """Return patterns of forces, so that others move nothing to speak of at a shift.
+
+    Each is as large as what random motions do to it, over the largest that they do at all, static
+    or not.
+    """
+    solver, drawn = pencil.factorise_damped(shift), _DRAWN
     n_pushed, n = pushed.shape
     while True:
         loads = pencil.mass @ np.random.default_rng(drawn).standard_normal((n, min(drawn, n)))
-        moved = solver.solve(loads) - rest.solve(loads)
-        told = pushed @ np.hstack([np.real(moved), np.imag(moved)])
+        whole = solver.solve(loads)
+        moved = pushed @ (whole - rest.solve(loads))
+        largest = np.linalg.norm(pushed @ whole, ord=2)
+        told = np.hstack([np.real(moved), np.imag(moved)]) / largest
         patterns, sizes, _ = np.linalg.svd(told, full_matrices=False)
-        kept = int(np.count_nonzero(sizes > small * sizes[0]))
+        kept = int(np.count_nonzero(sizes > small))
         if kept <= _FILLED * drawn or kept == n_pushed or drawn >= n:
-            return pushed.T @ patterns[:, :kept]
+            return patterns[:, :kept] * sizes[:kept]
         drawn *= 2

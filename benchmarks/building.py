@@ -9,8 +9,8 @@ the caches of another:
   below 20 Hz, one coupled crossing of 1000 roads with tools on three storeys;
 - ``all modes``: the same with every mode found and counted (a quarter of an hour and more);
 - ``twenty storeys``: of them, the count of modes below 20 Hz;
-- ``near and far``: one unit and its neighbours to 63 Hz, against Newmark's integration of the whole
-  (an hour; ``--reference FILE`` keeps that);
+- ``near and far``: one unit and its neighbours to 80 Hz, against Newmark's integration of the whole
+  (half an hour; ``--reference FILE`` keeps that);
 - ``opensees``: OpenSeesPy's time a step, on storeys of the unit, as many as it can hold within
   ``--opensees-gb`` and build and step within ten minutes, beside ours on the same model.
 """

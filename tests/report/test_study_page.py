@@ -127,6 +127,15 @@ def test_a_wheel_still_on_the_floor_keeps_everything_from_passing():
     assert "9 s" in page.tables["verdict"][0][2][2]
 
 
+def test_an_empty_field_of_the_lights_is_explained_where_there_is_one():
+    """In print, too, where no pointer shows what a field is."""
+    words = "empty, a criterion for another direction of motion"
+    level = "electron-microscope-horizontal"
+    both = study_of("", ('curves = ["VC-A"]', f'curves = ["VC-A", "{level}"]'))
+    assert words in _render(result_of(both), [])
+    assert words not in _render(result_of(study_of()), [])
+
+
 def test_every_verdict_stands_in_its_own_column():
     """Two roads and two points, each 2.5 times the last: by hand 50 / 3.7 over 4, 10, 25, 62.5."""
     study = study_of(TWO_ROADS + TWO_POINTS, CURVES)

@@ -142,7 +142,7 @@ def answering_modes(
     small = max(tolerance * (_SHARE_MAPPED if questions.mapped.shape[0] else _SHARE), _LEAST_KEPT)
     loudest = np.zeros((2, enquiry.probed.shape[1]))
     while len(lines):
-        basis = span.diagonal(pencil) if len(known) else None
+        basis = enquiry.motions(*span.diagonal(pencil)) if len(known) else None
         off, sizes = (np.zeros((len(lines), *loudest.shape)) for _ in range(2))
         shifts = [search.shift(omega) for omega in lines]
         for i, found in enumerate(answer_all(enquiry, shifts)):

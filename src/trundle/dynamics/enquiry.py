@@ -24,7 +24,7 @@ from trundle._typing import Array, SparseMatrix
 from trundle.dynamics.pencil import DampedPencil
 from trundle.dynamics.sparse_solver import Factor
 
-__all__ = ["Enquiry", "Questions"]
+__all__ = ["Enquiry", "Motions", "Questions"]
 
 _DRAWN = 160  # random motions by which the combinations of forces are found, at first
 _FILLED = 0.8  # of them, that may be needed before more are drawn
@@ -50,6 +50,25 @@ class Questions:
     pushed: SparseMatrix
     read: SparseMatrix
     mapped: SparseMatrix
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Motions:
+    """Hold what routes, maps, readings and probes see of the motions of a basis.
+
+    Attributes
+    ----------
+    omega : ndarray of float, shape (n_motions,)
+        Their circular frequencies [rad/s].
+    seen : ndarray of float, shape (n_seen, n_motions)
+        What routes see of them, then maps.
+    probed : ndarray of float, shape (n_probes, n_motions)
+        What readings and probes see of them.
+    """
+
+    omega: Float[Array, " motions"]
+    seen: Float[Array, "seen motions"]
+    probed: Float[Array, "probes motions"]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -130,6 +149,10 @@ class Enquiry:
         """Return what routes and maps see of motions of the coordinates."""
         return np.concatenate([self.questions.pushed @ motion, self.questions.mapped @ motion])
 
+    def motions(self, omega: Array, shapes: Array) -> Motions:
+        """Return what is seen of motions with some circular frequencies [rad/s]."""
+        return Motions(omega=omega, seen=self.seen(shapes), probed=self.probed.T @ shapes)
+
     @cached_property
     def groups(self) -> tuple[slice, slice]:
         """Which of what is seen lies on routes, and which on maps."""
@@ -137,7 +160,7 @@ class Enquiry:
         return slice(0, n), slice(n, n + more)
 
     def difference(
-        self, basis: tuple[Array, Array] | None, shift: complex, answers: Array
+        self, basis: Motions | None, shift: complex, answers: Array
     ) -> Float[Array, "2 2 probes"]:
         """Return by how much a basis is off answers that are known, and how large these are.
 
@@ -146,8 +169,8 @@ class Enquiry:
 
         Parameters
         ----------
-        basis : (ndarray, ndarray) or None
-            Circular frequencies [rad/s] and shapes; None for nothing but what is at rest.
+        basis : Motions or None
+            What is seen of the basis; None for nothing but what is at rest.
         shift : complex
             At which the answers are [rad2/s2].
         answers : ndarray of complex, shape (n_coordinates, n_forces)
@@ -156,11 +179,9 @@ class Enquiry:
         true = self.seen(answers[:, self.n_combined :])
         told = np.zeros_like(true)
         if basis is not None:
-            omega, shapes = basis
-            seen, probed = self.seen(shapes), self.probed.T @ shapes
             # statics are known: modes left out follow without delay
-            dynamic = 1.0 / (omega**2 - shift) - 1.0 / omega**2
-            told = self.at_rest + seen @ (dynamic[:, None] * probed.T)
+            dynamic = 1.0 / (basis.omega**2 - shift) - 1.0 / basis.omega**2
+            told = self.at_rest + basis.seen @ (dynamic[:, None] * basis.probed.T)
         both = np.array(
             [[np.linalg.norm(x[rows], axis=0) for rows in self.groups] for x in (told - true, true)]
         )

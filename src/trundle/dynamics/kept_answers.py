@@ -100,7 +100,8 @@ def are_answers_of(
     omega = high * random.uniform(0.3, 1.0)
     shift = complex(omega**2 / (1.0 + 2j * ratios(np.array([omega]))[0]))
     enquiry = Enquiry.of_probes(pencil, questions, pencil.factorise(0.0))
-    off, sizes = enquiry.difference((modes.omega, modes.shapes), shift, enquiry.at(shift))
+    motions = enquiry.motions(modes.omega, modes.shapes)
+    off, sizes = enquiry.difference(motions, shift, enquiry.at(shift))
     return bool(np.all(np.linalg.norm(off, axis=1) <= tolerance * np.linalg.norm(sizes, axis=1)))
 
 

@@ -38,8 +38,8 @@ def parts_words(change: PartsChange) -> str:
     worst = worst_words(level_shares(levels.levels), levels.cases, levels.points, levels.bands)
     found = worst or "no band level, as none is known by both"
     return (
-        f"keeping own modes of parts to {own:g} instead of {coarse:g} Hz changes {found}; twice as "
-        "much may be left"
+        f"keeping own modes of parts to {own:.4g} instead of {coarse:.3g} Hz changes {found}; "
+        "twice as much may be left"
     )
 
 

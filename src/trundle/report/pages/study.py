@@ -113,7 +113,7 @@ def _with_colours(payload: dict[str, Any]) -> dict[str, Any]:
 def _render(result: StudyResult, pictures: list[Picture]) -> str:
     study = result.study
     columns, matrix = verdict_matrix(result)
-    modes, conclusions = result.modes, concluded(result)
+    modes, conclusions, shown = result.modes, concluded(result), lights(result)
     return template("report.html.j2").render(
         study=study,
         numbering=study.numbering,
@@ -131,7 +131,8 @@ def _render(result: StudyResult, pictures: list[Picture]) -> str:
         verdict=headline(result),
         conclusions=conclusions,
         conclusion=conclusion_of_all(conclusions),
-        lights=lights(result),
+        lights=shown,
+        other_motion=any(not one.applies for row in shown.values() for one in row.values()),
         logo=_logo(study),
         space=_in_space(result),
         together=together_lines(result),

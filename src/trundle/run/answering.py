@@ -1,4 +1,4 @@
-"""Find by what a building answers to a study's jobs, in place of all its modes.
+"""Find by what a building answers to a study's jobs, or between places, in place of all modes.
 
 Each frequency at which it is solved is a task that any executor computes; they are taken in by
 their order, so that results have the same bits whoever computes them.
@@ -13,8 +13,16 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from trundle._progress import Progress
-from trundle._typing import Array
-from trundle.dynamics import ByMaterial, Enquiry, Modes, answering_modes, repeatable
+from trundle._typing import Array, SparseMatrix
+from trundle.dynamics import (
+    ByMaterial,
+    Damping,
+    Enquiry,
+    Modes,
+    Questions,
+    answering_modes,
+    repeatable,
+)
 from trundle.run.executor import Executor
 from trundle.run.jobs import Job
 from trundle.run.kept_answers import Asked, keep_answers, kept_answers
@@ -24,7 +32,7 @@ from trundle.structure import Structure
 from trundle.structure.elements import Damped
 from trundle.structure.superelements import PartedStructure, as_modes_of, questions_of
 
-__all__ = ["AnswerTask", "answers_to_jobs", "asks_for_answers"]
+__all__ = ["AnswerTask", "answers_to_jobs", "answers_to_places", "asks_for_answers"]
 
 _REDUCED = 0.3  # of the whole, what is done when parts are reduced, for progress
 _AT_ONCE = 1e9  # bytes of answers that are held together
@@ -89,8 +97,68 @@ def answers_to_jobs(
     """
     told = progress or _nobody
     structure.check_reach(f_max)
-    pencil = structure.reduced(tell=lambda _, share: told(_REDUCED * share)).pencil
+    structure.reduced(tell=lambda _, share: told(_REDUCED * share))
     told(_REDUCED)
+    with repeatable():
+        dofs, read = seen_by_jobs(structure, jobs)
+        questions = questions_of(structure, dofs, read, map_rows(structure, jobs))
+        return _answers(
+            structure,
+            questions,
+            [job.method.interaction.damping for job in jobs],
+            f_max=f_max,
+            executor=executor,
+            progress=lambda share: told(_REDUCED + (1.0 - _REDUCED) * share),
+        )
+
+
+def answers_to_places(
+    structure: PartedStructure,
+    loads: SparseMatrix,
+    points: SparseMatrix,
+    damping: Damping,
+    *,
+    f_max: float,
+    progress: Progress | None = None,
+) -> Modes:
+    """Return by what a structure answers between some places.
+
+    Parameters
+    ----------
+    structure : PartedStructure
+        The structure, by its parts.
+    loads, points : sparse array, shape (n, n_dofs)
+        Rows of weights of where it is pushed, and of where it is read.
+    damping : Damping
+        Its damping.
+    f_max : float
+        Highest frequency at which it answers [Hz].
+    progress : callable, optional
+        Told about how much of the work is done, 0 to 1.
+
+    Raises
+    ------
+    ConvergenceError
+        It does not come within the tolerance of the parting.
+    """
+    structure.check_reach(f_max)
+    with repeatable():
+        questions = questions_of(structure, np.unique(loads.indices), points)
+        return _answers(
+            structure, questions, [damping], f_max=f_max, executor=None, progress=progress
+        )
+
+
+def _answers(
+    structure: PartedStructure,
+    questions: Questions,
+    dampings: Sequence[Damping],
+    *,
+    f_max: float,
+    executor: Executor | None,
+    progress: Progress | None,
+) -> Modes:
+    """Return what is kept of the same questions, or find it by an executor, and keep it."""
 
     def answer_all(enquiry: Enquiry, shifts: Sequence[complex]) -> Iterator[Array]:
         """Give the answers in the order of the shifts, a few held at a time."""
@@ -106,30 +174,26 @@ def answers_to_jobs(
 
     def ratios(omega: Array) -> Array:
         """Return the least damping ratio of any method and material."""
-        return np.minimum.reduce([_least_ratios(structure, job, omega) for job in jobs])
+        return np.minimum.reduce([_least_ratios(structure, one, omega) for one in dampings])
 
-    with repeatable():
-        dofs, read = seen_by_jobs(structure, jobs)
-        questions = questions_of(structure, dofs, read, map_rows(structure, jobs))
-        asked = Asked(structure=structure, questions=questions, ratios=ratios, f_max=f_max)
-        found = kept_answers(asked)
-        if found is None:
-            found = answering_modes(
-                pencil,
-                questions,
-                ratios,
-                f_max=f_max,
-                tolerance=structure.parting.response_tolerance,
-                answer_all=answer_all,
-                progress=lambda share: told(_REDUCED + (1.0 - _REDUCED) * share),
-            )
-            keep_answers(asked, found)
-        return as_modes_of(structure, found)
+    asked = Asked(structure=structure, questions=questions, ratios=ratios, f_max=f_max)
+    found = kept_answers(asked)
+    if found is None:
+        found = answering_modes(
+            structure.joined.pencil,
+            questions,
+            ratios,
+            f_max=f_max,
+            tolerance=structure.parting.response_tolerance,
+            answer_all=answer_all,
+            progress=progress,
+        )
+        keep_answers(asked, found)
+    return as_modes_of(structure, found)
 
 
-def _least_ratios(structure: Structure, job: Job, omega: Array) -> Array:
-    """Return the least ratio that a mode at each frequency may have by a job's method."""
-    damping = job.method.interaction.damping
+def _least_ratios(structure: Structure, damping: Damping, omega: Array) -> Array:
+    """Return the least ratio that a mode at each frequency may have."""
     least = damping.ratios(omega)
     if isinstance(damping, ByMaterial):
         known = (one.damping_ratio for one in structure.elements if isinstance(one, Damped))

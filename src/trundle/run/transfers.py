@@ -10,10 +10,16 @@ from jaxtyping import Float
 from trundle._checks import one_of
 from trundle._progress import Progress
 from trundle._typing import Array
+from trundle.run.answering import answers_to_places, asks_for_answers
 from trundle.run.mode_cache import modes_of
 from trundle.run.parts import with_kept_parts
 from trundle.simulate import TransferFunctions, transfer
-from trundle.simulate.spectral.transfer import check_lines, modes_needed
+from trundle.simulate.spectral.transfer import (
+    check_lines,
+    load_rows,
+    modes_needed,
+    place_rows,
+)
 from trundle.structure import Spot
 from trundle.study.model import Study
 from trundle.study.plans import MethodPlan
@@ -67,12 +73,18 @@ def transfer_of(
     integration = method.interaction.integration
     check_lines(np.asarray(frequencies), integration)
     f_max = modes_needed(float(frequencies[-1]), integration)
+    damping = method.interaction.damping
+    if asks_for_answers(floor):
+        pushed, read = load_rows(floor, loads), place_rows(floor, "point", points)
+        modes = answers_to_places(floor, pushed, read, damping, f_max=f_max, progress=progress)
+    else:
+        modes = modes_of(floor, f_max=f_max, progress=progress)
     return transfer(
         floor,
         loads,
         points,
         frequencies,
         integration=integration,
-        damping=method.interaction.damping,
-        modes=modes_of(floor, f_max=f_max, progress=progress),
+        damping=damping,
+        modes=modes,
     )

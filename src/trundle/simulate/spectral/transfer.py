@@ -24,7 +24,14 @@ from trundle.simulate.modal.method import MODES_BEYOND, Modal
 from trundle.simulate.spectral.transfer_doubts import FAR_ENOUGH, transfer_doubts
 from trundle.structure import Spot, Spots, Structure
 
-__all__ = ["TransferFunctions", "check_lines", "modes_needed", "transfer"]
+__all__ = [
+    "TransferFunctions",
+    "check_lines",
+    "load_rows",
+    "modes_needed",
+    "place_rows",
+    "transfer",
+]
 
 _STEP = 1e-3  # s: nothing is stepped, but a floor is prepared for some step
 _LEAST = 25.0  # Hz: modes to here at least, so that lines near 0 have some
@@ -162,8 +169,8 @@ def transfer(
     chosen = floor.integration if isinstance(floor, PreparedFloor) else integration
     if chosen is not None:
         check_lines(lines, chosen)
-    pressed = _load_rows(structure, loads)
-    reader = _rows(structure, "point", points)
+    pressed = load_rows(structure, loads)
+    reader = place_rows(structure, "point", points)
     prepared = _in_modes(floor, lines, integration, damping, modes)
     used = np.unique(pressed.indices)
     reach, shares = prepared.reach(used, reader), pressed[:, used].toarray()
@@ -215,8 +222,14 @@ def _rising(frequencies: ArrayLike) -> Float[Array, " lines"]:
     return lines
 
 
-def _rows(floor: Structure, what: str, places: Mapping[str, Place]) -> sparse.csr_array:
-    """Return a row of weights for each place."""
+def place_rows(floor: Structure, what: str, places: Mapping[str, Place]) -> sparse.csr_array:
+    """Return a row of weights for each place.
+
+    Raises
+    ------
+    InputError
+        A place off the floor, or none.
+    """
     if not places:
         raise InputError(f"name at least one {what}, such as {{'tool': (6.0, 5.0)}}")
     found = list[SparseMatrix]()
@@ -230,9 +243,15 @@ def _rows(floor: Structure, what: str, places: Mapping[str, Place]) -> sparse.cs
     return sparse.csr_array(sparse.vstack(found, format="csr"))
 
 
-def _load_rows(floor: Structure, loads: Mapping[str, Place]) -> sparse.csr_array:
-    """Return the share of a unit force at each place that the model carries on each dof."""
-    rows = _rows(floor, "load", loads)
+def load_rows(floor: Structure, loads: Mapping[str, Place]) -> sparse.csr_array:
+    """Return the share of a unit force at each place that the model carries on each dof.
+
+    Raises
+    ------
+    InputError
+        A place off the floor, or one that is held.
+    """
+    rows = place_rows(floor, "load", loads)
     rows.eliminate_zeros()
     still = [name for name, n in zip(loads, np.diff(rows.indptr), strict=True) if n == 0]
     if still:

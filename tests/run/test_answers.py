@@ -83,7 +83,8 @@ def test_the_least_damped_material_decides_how_close_frequencies_lie():
         damped = f'density = "2500 kg/m3"\ndamping_ratio = "{own}"'
         study = tr.study_from_text(text.replace('density = "2500 kg/m3"', damped))
         for job in plan_jobs(study):
-            found = run_answering._least_ratios(study.floor, job, omega)
+            damping = job.method.interaction.damping
+            found = run_answering._least_ratios(study.floor, damping, omega)
             np.testing.assert_allclose(found, least)
 
 

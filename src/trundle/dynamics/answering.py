@@ -24,19 +24,19 @@ A. C. Antoulas, C. A. Beattie and S. Gugercin, Interpolatory Methods for Model R
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
 from jaxtyping import Float
-from scipy import linalg
 
 from trundle._progress import Progress
 from trundle._typing import Array
+from trundle.dynamics.answer_span import Span
 from trundle.dynamics.enquiry import Enquiry, Questions
 from trundle.dynamics.krylov import BLOCK, Krylov
 from trundle.dynamics.modes import Modes
-from trundle.dynamics.pencil import DampedPencil, Product, shift_near
+from trundle.dynamics.pencil import DampedPencil, shift_near
 from trundle.dynamics.sparse_solver import Factor
 from trundle.errors import ConvergenceError
 
@@ -50,9 +50,6 @@ _FINEST = 0.2  # spacing at which the search is given up
 _LEAST_RATIO = 0.002  # of the ratio, for the spacing
 _APART = 4.0  # of frequencies about which patterns of forces are looked for
 _SHARE = 0.3  # of the tolerance, below which a new direction is left out
-_LEAST_COMING = 1e-3  # of what would come, below which a reading counts no more for it
-_LEAST_KEPT = 3e-6  # of answers, below which directions are round-off
-_SHARE_MAPPED = 0.001  # the same with maps: nothing is solved from their end, and they may be far
 _FLOOR = 0.01  # of the loudest answer: what is 40 dB below it need not be known as well
 _HALFWAY = 20.0  # frequencies after which half of the work is done, as progress is told
 _STEPS = 6  # of the iteration that finds where the spectrum begins
@@ -137,17 +134,17 @@ def answering_modes(
     enquiry = Enquiry.of(
         pencil, questions, rest, shifts=[*map(search.shift, search.few())], tolerance=tolerance
     )
-    span, told = _Span(n_coordinates=pencil.mass.shape[0]), progress or _nobody
+    span, told = Span(enquiry=enquiry), progress or _nobody
     lines, known, error = search.first(), np.zeros(0), 0.0
-    small = max(tolerance * (_SHARE_MAPPED if questions.mapped.shape[0] else _SHARE), _LEAST_KEPT)
+    small = _SHARE * tolerance
     loudest = np.zeros((2, enquiry.probed.shape[1]))
     while len(lines):
-        basis = enquiry.motions(*span.diagonal(pencil)) if len(known) else None
+        basis = enquiry.motions(*span.diagonal()) if len(known) else None
         off, sizes = (np.zeros((len(lines), *loudest.shape)) for _ in range(2))
         shifts = [search.shift(omega) for omega in lines]
         for i, found in enumerate(answer_all(enquiry, shifts)):
             off[i], sizes[i] = lines[i] * enquiry.difference(basis, shifts[i], found)
-            span.take(enquiry, found, small)
+            span.take(found, small)
             told(1.0 - 0.5 ** ((len(known) + i + 1) / _HALFWAY))
         loudest = np.maximum(loudest, sizes.max(axis=0))
         errors = _largest(off, np.maximum(sizes, _FLOOR * loudest))
@@ -155,7 +152,7 @@ def answering_modes(
         passed = errors <= tolerance
         error = max(error, float(errors[passed].max(initial=0.0)))
         lines = search.next(known, lines if basis is None else lines[~passed])
-    omega, shapes = span.diagonal(pencil)
+    omega, shapes = span.diagonal()
     modes = Modes(omega=omega, shapes=shapes, residuals=np.full(len(omega), error), f_max=f_max)
     return AnsweringModes(modes=modes, error=error, n_frequencies=len(known), n_below=n_below)
 
@@ -202,82 +199,6 @@ class _Search:
 
     def _ratio(self, omega: Array) -> Array:
         return np.maximum(self.ratios(omega), _LEAST_RATIO)
-
-
-@dataclass(kw_only=True, eq=False)
-class _Span:
-    """A growing M-orthonormal basis V of all answers, with M V."""
-
-    n_coordinates: int
-    size: int = 0
-    _vectors: Array = field(init=False)
-    _loaded: Array = field(init=False)
-
-    def __post_init__(self) -> None:
-        self._vectors = np.empty((self.n_coordinates, 256), order="F")
-        self._loaded = np.empty_like(self._vectors)
-
-    def take(self, enquiry: Enquiry, answers: Array, small: float) -> None:
-        """Take in the dynamic part of answers, but for directions that are small beside the whole.
-
-        Of the dynamic part most may be what low modes no longer follow: beside that whatever
-        moves at a high frequency would be small. Of a reading to which little comes it is small
-        directions that bring it: they count by so much more as less comes.
-        """
-        block = np.hstack([np.real(answers), np.imag(answers)])
-        loaded = enquiry.pencil.mass @ block
-        squares = np.einsum("ij,ij->j", block, loaded).reshape(2, -1).sum(axis=0)
-        block[:, : enquiry.still.shape[1]] -= enquiry.still
-        loaded[:, : enquiry.still.shape[1]] -= enquiry.still_loaded
-        few = enquiry.n_combined
-        squares[:few] = squares[:few].sum()  # combinations as large as they are
-        sizes = np.sqrt(np.where(squares > 0.0, squares, 1.0))
-        across = np.linalg.norm(enquiry.forces[:, :few].T @ answers, axis=0)
-        comes = across * sizes[0] / (sizes * np.linalg.norm(across[:few]))
-        comes[:few] = 1.0
-        scale = np.tile(1.0 / (sizes * np.clip(comes, _LEAST_COMING, 1.0)), 2)
-        self._append(enquiry.pencil.mass, block * scale, loaded * scale, small**2)
-
-    def _append(self, mass: Product, block: Array, loaded: Array, least: float) -> None:
-        """Append the directions of a block that are new and larger than the least square.
-
-        What is new of it is told from products alone: with an M-orthonormal basis it is as large
-        as the block less what it has along the basis. Only directions that are kept are formed.
-        """
-        along = self._loaded[:, : self.size].T @ block
-        squares, turned = linalg.eigh(block.T @ loaded - along.T @ along)
-        kept = squares > least
-        if not kept.any():
-            return
-        few = turned[:, kept] / np.sqrt(squares[kept])
-        new = block @ few - self._vectors[:, : self.size] @ (along @ few)
-        heavy = mass @ new
-        for _ in range(2):  # small directions bring back what was taken off
-            new, heavy = self._apart(new, heavy)
-            lower = linalg.cholesky(new.T @ heavy, lower=True)
-            back = linalg.solve_triangular(lower, np.eye(len(lower)), lower=True).T
-            new, heavy = new @ back, heavy @ back
-        self._make_room(new.shape[1])
-        here = slice(self.size, self.size + new.shape[1])
-        self._vectors[:, here], self._loaded[:, here] = new, heavy
-        self.size += new.shape[1]
-
-    def _apart(self, block: Array, loaded: Array) -> tuple[Array, Array]:
-        """Take off what lies in the basis already."""
-        basis, heavy = self._vectors[:, : self.size], self._loaded[:, : self.size]
-        along = heavy.T @ block
-        return block - basis @ along, loaded - heavy @ along
-
-    def _make_room(self, more: int) -> None:
-        while self.size + more > self._vectors.shape[1]:
-            self._vectors = np.asfortranarray(np.hstack([self._vectors, self._vectors]))
-            self._loaded = np.asfortranarray(np.hstack([self._loaded, self._loaded]))
-
-    def diagonal(self, pencil: DampedPencil) -> tuple[Array, Array]:
-        """Return circular frequencies and shapes of the structure within the span."""
-        basis = self._vectors[:, : self.size]
-        square, turned = linalg.eigh(basis.T @ (pencil.stiffness @ basis))
-        return np.sqrt(np.maximum(square, 0.0)), basis @ turned
 
 
 def _largest(off: Array, sizes: Array) -> Array:

@@ -40,7 +40,7 @@ DAMPING = Rayleigh(alpha=0.8587, beta=0.001)
 DT = 0.025
 STEPS = 12
 PATIENCE = 600.0  # s for one model of it
-HEIGHTS = (2, 4, 8)  # storeys of the unit that OpenSeesPy is given in turn
+HEIGHTS = (2, 4, 8, 16)  # storeys of the unit that OpenSeesPy is given in turn
 
 
 def figures(cache: str, given: argparse.Namespace) -> dict[str, tuple[list[str], str]]:

@@ -7,7 +7,7 @@ the caches of another:
 - ``one unit``: four storeys of the reference unit, modes by parts against the whole;
 - ``from nothing``, ``parts kept``, ``answers kept``: forty units on four storeys, what answers
   below 20 Hz, one coupled crossing of 1000 roads with tools on three storeys;
-- ``all modes``: the same with every mode found and counted (a quarter of an hour and more);
+- ``all modes``: the same with every mode found and counted (eight minutes);
 - ``twenty storeys``: of them, the count of modes below 20 Hz;
 - ``near and far``: one unit and its neighbours to 80 Hz, against Newmark's integration of the whole
   (half an hour; ``--reference FILE`` keeps that);

@@ -101,9 +101,7 @@ def plate(n=N, *, f_first=0.6, seed=0):
     square = one.stiffness @ one.stiffness
     first = 2 * (2 - 2 * np.cos(np.pi / (n + 1)))
     unit = (2 * np.pi * f_first) ** 2 / first  # of what the grid is a multiple
-    return SparsePencil(
-        mass=one.mass, stiffness=sparse.csc_array(square * (unit / first / unit**2))
-    )
+    return SparsePencil(mass=one.mass, stiffness=sparse.csc_array(square / (first * unit)))
 
 
 def side_by_side(pencils, link):

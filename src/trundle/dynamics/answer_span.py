@@ -69,7 +69,7 @@ class Span:
         on_maps = np.linalg.norm(both) / sizes[0]
         block[:, :still] -= enquiry.still
         loaded[:, :still] -= enquiry.still_loaded
-        mapped[:, :still] -= enquiry.questions.mapped @ enquiry.still
+        mapped[:, :still] -= enquiry.still_mapped
         across = np.linalg.norm(enquiry.forces[:, :few].T @ answers, axis=0)
         comes = across * sizes[0] / (sizes * np.linalg.norm(across[:few]))
         comes[:few] = 1.0

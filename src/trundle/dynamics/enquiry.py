@@ -135,6 +135,11 @@ class Enquiry:
         """The mass times the static answers."""
         return self.pencil.mass @ self.still
 
+    @cached_property
+    def still_mapped(self) -> Float[Array, "mapped forces"]:
+        """What maps see of the static answers."""
+        return self.questions.mapped @ self.still
+
     @property
     def probed(self) -> Float[Array, "coordinates probes"]:
         """What is read and what is probed with: forces whose answers tell errors."""

@@ -95,10 +95,7 @@ def answers_to_jobs(
     ConvergenceError
         It does not come within the tolerance of the parting.
     """
-    told = progress or _nobody
-    structure.check_reach(f_max)
-    structure.reduced(tell=lambda _, share: told(_REDUCED * share))
-    told(_REDUCED)
+    told = _reduced(structure, f_max, progress)
     with repeatable():
         dofs, read = seen_by_jobs(structure, jobs)
         questions = questions_of(structure, dofs, read, map_rows(structure, jobs))
@@ -108,7 +105,7 @@ def answers_to_jobs(
             [job.method.interaction.damping for job in jobs],
             f_max=f_max,
             executor=executor,
-            progress=lambda share: told(_REDUCED + (1.0 - _REDUCED) * share),
+            progress=told,
         )
 
 
@@ -141,12 +138,19 @@ def answers_to_places(
     ConvergenceError
         It does not come within the tolerance of the parting.
     """
-    structure.check_reach(f_max)
+    told = _reduced(structure, f_max, progress)
     with repeatable():
         questions = questions_of(structure, np.unique(loads.indices), points)
-        return _answers(
-            structure, questions, [damping], f_max=f_max, executor=None, progress=progress
-        )
+        return _answers(structure, questions, [damping], f_max=f_max, executor=None, progress=told)
+
+
+def _reduced(structure: PartedStructure, f_max: float, progress: Progress | None) -> Progress:
+    """Reduce the parts, which must reach far enough; return whom to tell of what is left."""
+    told = progress or _nobody
+    structure.check_reach(f_max)
+    structure.reduced(tell=lambda _, share: told(_REDUCED * share))
+    told(_REDUCED)
+    return lambda share: told(_REDUCED + (1.0 - _REDUCED) * share)
 
 
 def _answers(
@@ -156,7 +160,7 @@ def _answers(
     *,
     f_max: float,
     executor: Executor | None,
-    progress: Progress | None,
+    progress: Progress,
 ) -> Modes:
     """Return what is kept of the same questions, or find it by an executor, and keep it."""
 

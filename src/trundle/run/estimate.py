@@ -38,7 +38,7 @@ _REDUCED = 1e-4  # s for each degree of freedom of parts that are reduced
 _COORDINATES = 1.8  # of parts and seams, for each mode below the frequency to which parts are kept
 _AN_ANSWER = 1.3e-6  # s for each of them to the power 1.5, at one frequency
 _LOOKED_AT = 3.6  # frequencies, for each at which is looked at first
-_ANSWERING = 1200.0  # combinations that stand for many modes, about: 927 to 3131 were seen
+_ANSWERING = 1200.0  # combinations that stand for many modes, about: 696 to 2342 were seen
 _LAY_OUT = 5e-5  # s for each degree of freedom, for each job
 _FIGURES = 0.6  # s for each cell's figures and tables
 

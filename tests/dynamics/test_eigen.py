@@ -159,8 +159,8 @@ def test_what_a_slice_has_missed_is_hunted_down(monkeypatch):
     )
     near, lost = lanczos.near, []
 
-    def one_less(*args):
-        part = near(*args)
+    def one_less(*args, **kwargs):
+        part = near(*args, **kwargs)
         if lost:
             return part
         lost.append(part.eigenvalues[7])

@@ -36,7 +36,8 @@ __all__ = ["ResponseBasis", "response_basis"]
 _FINE = 0.7  # spacing of frequencies, against the damping ratio: half a resonance's half width
 _LEAST_RATIO = 0.002  # of the ratio, for the spacing
 _BESIDE = 40  # further columns of a random start
-_SWEEPS = 3  # of subspace iteration
+_AHEAD = 5  # times the vectors first asked for are found: sizes grow until they do
+_SWEEPS = 2  # of subspace iteration
 _PROBES = 12  # combinations of the route's dofs by which its own motion is tried
 _BAND = 2.0 ** (1.0 / 3.0)  # width of the bands in which errors are told
 _GROWTH = 1.6  # of the basis, while it does not do
@@ -100,13 +101,13 @@ def _searched(
     lines, tolerance = wanted
     h = _receptance(omega, ratios, lines)
     route, points = _of_rank(route), points[np.any(points != 0.0, axis=1)]
-    gram = _gram(h, route) + _gram(h, points)
+    leading = _Leading(_gram(h, route) + _gram(h, points))
     middles = np.sqrt(lines[1:] * lines[:-1])
     trial = _Trial.of(omega, ratios, route, points, middles)
     too_small, enough = 0, int(_WORTHWHILE * len(omega))
     size, best = 2 * min(len(points) + len(route), 40), None
     while too_small < size <= enough:
-        found = _diagonal(_leading(gram, size), omega, ratios)
+        found = _diagonal(leading.first(size), omega, ratios)
         error = trial.error_of(found)
         if error <= tolerance:
             best, enough = replace(found, error=error), size
@@ -151,15 +152,33 @@ def _gram(h: Array, rows: Array) -> Array:
     return out
 
 
-def _leading(gram: Array, size: int) -> Array:
-    """Return orthonormal vectors that span those of the largest eigenvalues."""
-    n = len(gram)
-    columns = min(n, size + _BESIDE)
-    span = np.random.default_rng(n).standard_normal((n, columns))
-    for _ in range(_SWEEPS):
-        span, _ = linalg.qr(gram @ span, mode="economic")
-    _, vectors = linalg.eigh(span.T @ (gram @ span))
-    return span @ vectors[:, ::-1][:, :size]
+class _Leading:
+    """Orthonormal vectors of the largest eigenvalues; what larger sizes found serves smaller ones.
+
+    `gram` (n, n) is symmetric.
+    """
+
+    def __init__(self, gram: Float[Array, "modes modes"]) -> None:
+        self._gram = gram
+        self._known = np.zeros((len(gram), 0))
+
+    def first(self, size: int) -> Float[Array, "modes size"]:
+        """Return so many, largest eigenvalue first."""
+        if size > self._known.shape[1]:
+            ahead = 1 if self._known.shape[1] else _AHEAD
+            self._known = self._found(min(len(self._gram), ahead * size))
+        return self._known[:, :size]
+
+    def _found(self, size: int) -> Array:
+        """Return vectors by subspace iteration, from those that are known and some at random."""
+        n, known = len(self._gram), self._known
+        more = min(n, size + _BESIDE) - known.shape[1]
+        drawn = np.random.default_rng(n).standard_normal((n, more))
+        span = np.hstack([known, drawn])
+        for _ in range(_SWEEPS):
+            span, _ = linalg.qr(self._gram @ span, mode="economic")
+        _, vectors = linalg.eigh(span.T @ (self._gram @ span))
+        return span @ vectors[:, ::-1][:, :size]
 
 
 def _diagonal(span: Array, omega: Array, ratios: Array) -> ResponseBasis:

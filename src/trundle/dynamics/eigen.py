@@ -34,7 +34,7 @@ __all__ = [
 _DENSE_LIMIT = 600
 _DENSE_FALLBACK = 6000
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any floor mode
-_OF_PARTS = 320  # modes looked for at one shift of a structure by its parts: its factors are cheap
+_OF_PARTS = 500  # modes looked for at one shift of a structure by its parts: products are cheap
 _RIGID = 1e-4  # rad2/s2: an eigenvalue below this is a motion without strain
 
 

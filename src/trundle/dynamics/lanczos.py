@@ -19,14 +19,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
 
 from trundle._typing import Array
 from trundle.dynamics.krylov import BLOCK
-from trundle.dynamics.near_shift import EigenSlice, hunted, near
+from trundle.dynamics.near_shift import EQUAL, EigenSlice, hunted, near
 from trundle.dynamics.pencil import Pencil, Shift, shift_near
 from trundle.errors import ConvergenceError
 
@@ -37,7 +37,7 @@ _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for a free body, far below any f
 _SHORTEST = 80  # modes of a slice below which a march is given up
 _EDGES = 16  # last modes of a slice among which the widest gap is its end
 _MIDDLE = 0.62  # of the highest frequency: as many modes above as below, with what each costs
-_EQUAL = 1e-5  # relative distance of eigenvalues that may be copies of one
+_SEEN = 0.2  # of the modes ahead, which if seen tell how far the others reach
 _LARGEST = 2400  # modes that one shift may be left with where no shift parts them
 
 
@@ -154,17 +154,23 @@ def march_within(
         found = reached[-1].found
         keep(found, part)
         reached.append(
-            _Reached(found=found + len(part.eigenvalues), edge=edge, last=part.eigenvalues)
+            _Reached(
+                found=found + len(part.eigenvalues),
+                edge=edge,
+                last=part.eigenvalues,
+                beyond=part.beyond,
+            )
         )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Reached:
-    """How far a march has come: eigenvalues below `edge`, and the last slice's."""
+    """How far a march has come: eigenvalues below `edge`, the last slice's, and some beyond."""
 
     found: int
     edge: float
     last: Float[Array, " modes"]
+    beyond: Float[Array, " beyond"] = field(default_factory=lambda: np.zeros(0))
 
 
 def _next_slice(
@@ -174,15 +180,14 @@ def _next_slice(
     found, wanted = reached.found, interval.end
     if shift is None:
         shift = _next_shift(pencil, interval, reached, most)
-    left = shift.below - found
-    right = min(wanted - shift.below, max(BLOCK, _share(wanted - found, most) - left))
-    whole = shift.below + right == wanted
-    bounds = (reached.edge, interval.limit if whole else np.inf)
-    part, edge = near(pencil.mass, shift, left, right, bounds), interval.limit
+    left, right = shift.below - found, wanted - shift.below
+    bounds = (reached.edge, interval.limit)
+    part = near(pencil.mass, shift, left, right, bounds, aim=_share(wanted - found, most))
+    whole, edge = len(part.eigenvalues) == left + right, interval.limit
     if not whole and len(part.eigenvalues) == left and part.eigenvalues[-1] < shift.value:
         edge = shift.value  # all below the shift, which inertia has counted, and nothing above
     elif not whole:
-        part, edge = _up_to_a_gap(part)
+        part, edge = _up_to_a_gap(part, interval.limit)
         if _copies(part.eigenvalues) >= BLOCK:
             part = _completed(pencil, shift, part, (reached.last[-1], edge), found)
     _check(part, reached.last[-1], edge)
@@ -205,22 +210,27 @@ def _check(part: EigenSlice, before: float, edge: float) -> None:
         )
 
 
-def _up_to_a_gap(part: EigenSlice) -> tuple[EigenSlice, float]:
+def _up_to_a_gap(part: EigenSlice, limit: float) -> tuple[EigenSlice, float]:
     """Cut a slice in the widest gap near its end, so that equal modes stay together."""
-    gaps = np.diff(part.eigenvalues) / part.eigenvalues[1:]
+    values = part.eigenvalues
+    gaps = np.diff(values) / values[1:]
     # of many equal modes all of the last ones may be copies: then the last gap before them
     late = max(0, len(gaps) - _EDGES + 1)
-    wide = np.flatnonzero(gaps > _EQUAL)
+    wide = np.flatnonzero(gaps > EQUAL)
+    above = part.beyond[part.beyond > values[-1] * (1.0 + EQUAL)]
+    if not len(wide):  # copies of one mode: the gap behind them
+        return part, float(0.5 * (values[-1] + above[0])) if len(above) else limit
     if len(wide) and wide[-1] < late:
         late = int(wide[-1])
     cut = late + 1 + int(np.argmax(gaps[late:]))
-    edge = 0.5 * (part.eigenvalues[cut - 1] + part.eigenvalues[cut])
-    return EigenSlice(eigenvalues=part.eigenvalues[:cut], shapes=part.shapes[:, :cut]), float(edge)
+    edge = float(0.5 * (values[cut - 1] + values[cut]))
+    beyond = np.concatenate([values[cut:], part.beyond])
+    return EigenSlice(eigenvalues=values[:cut], shapes=part.shapes[:, :cut], beyond=beyond), edge
 
 
 def _copies(eigenvalues: Array) -> int:
     """Return how many eigenvalues at most lie together."""
-    apart = np.diff(eigenvalues) > _EQUAL * np.abs(eigenvalues[1:])
+    apart = np.diff(eigenvalues) > EQUAL * np.abs(eigenvalues[1:])
     ends = np.concatenate([[-1], np.flatnonzero(apart), [len(eigenvalues) - 1]])
     return int(np.diff(ends).max())
 
@@ -235,25 +245,33 @@ def _completed(
 
 def _next_shift(pencil: Pencil, interval: Interval, reached: _Reached, most: int) -> Shift:
     """Place a shift in the middle of the modes that it is to find."""
-    found, last, edge = reached.found, reached.last, reached.edge
+    found, start = reached.found, float(np.sqrt(reached.edge))
     ahead = 0.5 * _share(interval.end - found, most)
-    start, end = np.sqrt(edge), np.sqrt(interval.limit)
-    # Frequencies of a floor are about evenly spaced over a short way.
-    omega = np.sqrt(np.maximum(last[-64:], 0.0))
-    if len(omega) > 1 and omega[-1] > omega[0]:
-        spacing = (omega[-1] - omega[0]) / (len(omega) - 1)
-    else:
-        spacing = (end - start) / (interval.end - found)
-    distance = min(ahead * spacing, 0.5 * (end - start))
-    shift = shift_near(pencil, float(start + distance))
+    distance = min(_distance(interval, reached, ahead), 0.5 * (np.sqrt(interval.limit) - start))
+    shift = shift_near(pencil, start + distance)
     for _ in range(40):
-        shift = shift_near(pencil, float(start + distance))
         if shift.below - found <= 1.5 * ahead + BLOCK:
             return shift
         distance *= max(0.25, ahead / (shift.below - found))
+        shift = shift_near(pencil, start + distance)
     if shift.below - found <= _LARGEST:
         return shift  # so many equal modes: one slice takes them all
     raise ConvergenceError(
         f"no shift above {start / (2.0 * np.pi):.6g} Hz parts the modes that lie close together",
         residual=float("nan"),
     )
+
+
+def _distance(interval: Interval, reached: _Reached, ahead: float) -> float:
+    """Return how far above what is reached about so many modes lie [rad/s].
+
+    What the last shift saw beyond its slice tells that best: modes of a building of equal parts
+    lie in clusters, so that the spacing of the last ones says little of the next.
+    """
+    start = np.sqrt(reached.edge)
+    beyond = np.sqrt(reached.beyond[reached.beyond > reached.edge])
+    if len(beyond) > ahead:
+        return float(0.5 * (beyond[int(ahead) - 1] + beyond[int(ahead)]) - start)
+    if len(beyond) > _SEEN * ahead:
+        return float((beyond[-1] - start) * ahead / len(beyond))
+    return float((np.sqrt(interval.limit) - start) / (interval.end - reached.found) * ahead)

@@ -7,7 +7,7 @@ columns and bays have them, are searched for beside what was found.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
@@ -17,10 +17,15 @@ from trundle.dynamics.krylov import BLOCK, Krylov
 from trundle.dynamics.pencil import Product, Shift
 from trundle.errors import ConvergenceError
 
-__all__ = ["EigenSlice", "hunted", "near"]
+__all__ = ["EQUAL", "EigenSlice", "hunted", "near"]
 
 _USUAL_SUBSPACE = 2.3  # columns a mode takes to converge; looking earlier costs time
+_LOOKS = 1.08  # size of the subspace at a look against the one before
+_SHIFT_COST = 240  # columns that could be formed while a shift is factorised and looked at
+_WORTH_A_SHIFT = 0.4  # of those to find: where fewer are left, they are found by this shift
+EQUAL = 1e-5  # relative distance of eigenvalues that may be copies of one
 _ACCURATE = 1e-11  # relative error of an inverse eigenvalue that counts as converged
+_NEARLY = 0.03  # and of one that tells how many lie further on
 _ANEW = 60  # searches beside what is found, each of which shows another block of copies
 
 
@@ -34,54 +39,196 @@ class EigenSlice:
         Rising [rad2/s2].
     shapes : ndarray of float, shape (n_dofs, n_found)
         Eigenvectors, M-orthonormal.
+    beyond : ndarray of float, shape (n_beyond,)
+        About where further eigenvalues lie above these, rising; they have not converged.
     """
 
     eigenvalues: Float[Array, " modes"]
     shapes: Float[Array, "dofs modes"]
+    beyond: Float[Array, " beyond"] = field(default_factory=lambda: np.zeros(0))
 
 
 def near(
-    mass: Product, shift: Shift, left: int, right: int, bounds: tuple[float, float]
+    mass: Product,
+    shift: Shift,
+    left: int,
+    right: int,
+    bounds: tuple[float, float],
+    *,
+    aim: int,
 ) -> EigenSlice:
-    """Return so many eigenpairs on the left of a shift and on its right, all within bounds."""
-    wanted = left + right
-    capacity = min(mass.shape[0] - 1, 5 * wanted + 32 * BLOCK)
-    krylov = Krylov(mass, shift.factor, capacity)
-    next_look = int(_USUAL_SUBSPACE * wanted) + 6 * BLOCK
+    """Return all eigenpairs left of a shift, and of those on its right the nearest.
+
+    Parameters
+    ----------
+    mass : sparse array or product, shape (n_dofs, n_dofs)
+        M [kg].
+    shift : Shift
+        The shift.
+    left, right : int
+        How many lie within bounds on either side, by inertia.
+    bounds : tuple of float
+        Where the part of the spectrum begins and ends [rad2/s2].
+    aim : int
+        How many to find, about: where the right side is slow to come, another shift costs less.
+
+    Raises
+    ------
+    ConvergenceError
+        The iteration stops short.
+    """
+    whole = left + right <= aim
+    aim = min(left + right, max(aim, left + 2 * BLOCK))
+    krylov = Krylov(mass, shift.factor, min(mass.shape[0] - 1, 5 * aim + 32 * BLOCK))
+    next_look, before = int(_USUAL_SUBSPACE * aim) + 6 * BLOCK, (0, -np.inf)
     while krylov.extend():
-        if krylov.size >= next_look:
-            nu, ritz, errors = krylov.ritz_pairs()
-            good = errors <= _ACCURATE * np.abs(nu)
-            # nearest the shift are the largest on either side: first and last of the list
-            if good[:left].all() and good[len(nu) - right :].all():
-                pick = np.r_[:left, len(nu) - right : len(nu)]
-                eigenvalues = shift.value + 1.0 / nu[pick]
-                inside = (eigenvalues >= bounds[0]) & (eigenvalues < bounds[1])
-                pick, eigenvalues = pick[inside], eigenvalues[inside]
-                order = np.argsort(eigenvalues)
-                shapes = krylov.vectors(ritz[:, pick[order]])
-                part = EigenSlice(eigenvalues=eigenvalues[order], shapes=shapes)
-                # what lies beyond the bounds converged in the place of copies that do not appear
-                return part if inside.all() else hunted(mass, shift, part, bounds, wanted)
-            next_look = int(1.08 * krylov.size)
-    whole = bool(np.isfinite(bounds[1]))
-    nu, ritz, errors = krylov.ritz_pairs()
-    good, values = errors <= _ACCURATE * np.abs(nu), shift.value + 1.0 / nu
-    # on the right, all that lie nearest; those on the left are not taken twice
-    fewer = min(right, int(np.argmin(np.r_[good[::-1], False])))
-    pick = np.r_[:left, len(nu) - fewer : len(nu)]
-    if not whole and fewer > BLOCK and good[:left].all() and values[pick].min() >= bounds[0]:
-        pick = pick[np.argsort(values[pick])]  # the rest by later shifts
-        return EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
+        if krylov.size < next_look:
+            continue
+        found = _Found.of(krylov, shift, left, right)
+        count, size = left + found.n_right, krylov.size
+        if found.left_is_done and count:
+            slow = (count - before[1]) * (size + _SHIFT_COST) < count * (size - before[0])
+            worth_another = left + right - count > _WORTH_A_SHIFT * aim
+            ends = found.n_right == right or found.goes_beyond(bounds[1])
+            if ends or (count > BLOCK and worth_another and (slow or count >= aim)):
+                return _of_both_sides(mass, shift, krylov, found, bounds, whole=whole)
+            before = (size, count)
+        next_look = int(_LOOKS * krylov.size)
+    found = _Found.of(krylov, shift, left, right)
+    some = left + right if whole else left
+    return _as_far_as_it_came(mass, shift, krylov, found, bounds, hunted_for=some)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Found:
+    """What a Krylov space knows of the eigenvalues nearest its shift.
+
+    `values`, by rising inverse: those on the left first, farthest last; `good` says which have
+    converged; `n_right` of `right` are the nearest that have without a gap.
+    """
+
+    left: int
+    right: int
+    n_right: int
+    values: Array
+    vectors: Array
+    good: Array
+    nearly: Array
+
+    @classmethod
+    def of(cls, krylov: Krylov, shift: Shift, left: int, right: int) -> _Found:
+        """Look at a space."""
+        nu, vectors, errors = krylov.ritz_pairs()
+        good = errors <= _ACCURATE * np.abs(nu)
+        values = shift.value + 1.0 / nu
+        return cls(
+            left=left,
+            right=right,
+            n_right=min(right, _ready(values[nu > 0.0][::-1], good[nu > 0.0][::-1])),
+            values=values,
+            vectors=vectors,
+            good=good,
+            nearly=errors <= _NEARLY * np.abs(nu),
+        )
+
+    @property
+    def left_is_done(self) -> bool:
+        """Whether all on the left have converged."""
+        return len(self.good) >= self.left and bool(self.good[: self.left].all())
+
+    @property
+    def nearest(self) -> Array:
+        """Where those on the left, and on the right as far as they have converged, stand."""
+        n = len(self.values)
+        return np.r_[: self.left, n - self.n_right : n]
+
+    def goes_beyond(self, limit: float) -> bool:
+        """Return whether what has converged on the right reaches a limit: copies are missing."""
+        return bool(np.any(self.values[self.nearest] >= limit))
+
+    def beyond(self, value: float) -> Array:
+        """Return about where others lie above one, as far as that can be trusted."""
+        sure = self.values[::-1][: int(np.argmin(np.r_[self.nearly[::-1], False]))]
+        return sure[sure > value]
+
+    def slice_of(self, pick: Array, krylov: Krylov) -> EigenSlice:
+        """Return some of the eigenpairs, rising."""
+        order = pick[np.argsort(self.values[pick])]
+        values = self.values[order]
+        beyond = self.beyond(values[-1]) if len(values) else np.zeros(0)
+        shapes = krylov.vectors(self.vectors[:, order])
+        return EigenSlice(eigenvalues=values, shapes=shapes, beyond=beyond)
+
+
+def _ready(values: Array, good: Array) -> int:
+    """Return how many of rising values come before the first that is not good, or its copies."""
+    ready = int(np.argmin(np.r_[good, False]))
+    if ready == len(values):
+        return ready
+    apart = np.diff(values[: ready + 1], prepend=-np.inf) > EQUAL * np.abs(values[: ready + 1])
+    return int(np.flatnonzero(apart)[-1])
+
+
+def _of_both_sides(
+    mass: Product,
+    shift: Shift,
+    krylov: Krylov,
+    found: _Found,
+    bounds: tuple[float, float],
+    *,
+    whole: bool,
+) -> EigenSlice:
+    """Return the nearest, with copies searched for where those do not all lie within bounds.
+
+    `whole` says that all within bounds are to be found by this shift.
+    """
+    pick = found.nearest
+    values = found.values[pick]
+    inside = (values >= bounds[0]) & (values < bounds[1])
+    part = found.slice_of(pick[inside], krylov)
+    # what lies beyond the bounds converged in the place of copies that do not appear
+    if not inside.all() and (whole or found.n_right == found.right):
+        return hunted(mass, shift, part, bounds, found.left + found.right)
+    if np.any(values < bounds[0]):
+        part = found.slice_of(pick[inside & (values < shift.value)], krylov)
+        return hunted(mass, shift, part, (bounds[0], shift.value), found.left)
+    return part
+
+
+def _as_far_as_it_came(
+    mass: Product,
+    shift: Shift,
+    krylov: Krylov,
+    found: _Found,
+    bounds: tuple[float, float],
+    *,
+    hunted_for: int,
+) -> EigenSlice:
+    """Return what a space without further room knows, as far as no copy can be missing.
+
+    `hunted_for` of the rest are searched for beside what it knows: all, or those on the left.
+
+    Raises
+    ------
+    ConvergenceError
+        That is nothing.
+    """
+    pick, values = found.nearest, found.values
+    inside = (values >= bounds[0]) & (values < bounds[1])
+    some = found.n_right > BLOCK and found.n_right < found.right
+    if some and found.left_is_done and inside[pick].all():
+        return found.slice_of(pick, krylov)  # the rest by later shifts
     # Where copies are missing, others in their place may be too far to converge.
-    if whole or left:
-        bounds = bounds if whole else (bounds[0], shift.value)
-        pick = np.flatnonzero((values >= bounds[0]) & (values < bounds[1]) & good)
-        part = EigenSlice(eigenvalues=values[pick], shapes=krylov.vectors(ritz[:, pick]))
-        return hunted(mass, shift, part, bounds, wanted if whole else left)
+    if hunted_for:
+        if hunted_for < found.left + found.right:
+            bounds = (bounds[0], shift.value)
+        inside = (values >= bounds[0]) & (values < bounds[1]) & found.good
+        part = found.slice_of(np.flatnonzero(inside), krylov)
+        return hunted(mass, shift, part, bounds, hunted_for)
+    place = np.sqrt(max(shift.value, 0.0)) / (2.0 * np.pi)
     raise ConvergenceError(
-        f"{wanted} modes wanted near {np.sqrt(max(shift.value, 0.0)) / (2.0 * np.pi):.6g} Hz by "
-        f"inertia, but the iteration stopped short with a subspace of {krylov.size}",
+        f"{found.left + found.right} modes wanted near {place:.6g} Hz by "
+        f"inertia, but the iteration stopped short with a subspace of {len(values)}",
         residual=float("nan"),
     )
 

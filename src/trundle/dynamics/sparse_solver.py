@@ -225,7 +225,7 @@ class _PardisoFactor:
 
 def _upper(matrix: SparseMatrix) -> Any:
     """Return the upper triangle of a symmetric matrix by rows, each in its order."""
-    if matrix.format != "csc" or not np.iscomplexobj(matrix):
+    if matrix.format != "csc":
         upper = sparse.csr_matrix(sparse.triu(sparse.csr_array(matrix), format="csr"))
         upper.sort_indices()
         return upper

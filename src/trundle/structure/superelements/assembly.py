@@ -20,6 +20,7 @@ from trundle.structure.superelements.piece_bases import PieceBasis, WrittenSeam,
 from trundle.structure.superelements.seams import (
     Boundary,
     Placed,
+    RelaxedParts,
     Seam,
     SeamShapes,
     ends_of,
@@ -211,12 +212,13 @@ def join(
     kept = np.concatenate([*(seam.dofs for seam in short), np.zeros(0, dtype=np.intp)])
     known: dict[tuple[object, ...], SeamShapes] = {}
     written: list[WrittenSeam] = []
-    count = len(kept)
+    count, relaxed = len(kept), RelaxedParts(parts)
     for done, seam in enumerate(long):
         most = float(shares[list(seam.pieces)].max())
         key = (most, *_seam_key(seam, ends_of(seam, short), parts, placed, boundaries))
         if key not in known:
-            known[key] = seam_shapes(seam, short, parts, placed, boundaries, f_max=most * f_seams)
+            most_kept = most * f_seams
+            known[key] = seam_shapes(seam, short, relaxed, placed, boundaries, f_max=most_kept)
         shapes = replace(known[key], ends=ends_of(seam, short))
         written.append(WrittenSeam(seam=seam, shapes=shapes, key=key, first=count))
         count += shapes.own.shape[1]

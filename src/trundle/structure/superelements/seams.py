@@ -26,7 +26,16 @@ from trundle.errors import UnrestrainedModeError
 
 _SHIFT = 1.0  # rad2/s2: keeps K + s M definite for what can move freely
 
-__all__ = ["Boundary", "Placed", "Seam", "SeamShapes", "ends_of", "seam_shapes", "seams_of"]
+__all__ = [
+    "Boundary",
+    "Placed",
+    "RelaxedParts",
+    "Seam",
+    "SeamShapes",
+    "ends_of",
+    "seam_shapes",
+    "seams_of",
+]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -128,7 +137,7 @@ def ends_of(seam: Seam, short: Sequence[Seam]) -> Int[Array, " ends"]:
 def seam_shapes(
     seam: Seam,
     short: Sequence[Seam],
-    parts: Sequence[Superelement],
+    parts: RelaxedParts,
     placed: Sequence[Placed],
     boundaries: Sequence[Boundary],
     *,
@@ -142,7 +151,7 @@ def seam_shapes(
         The seam.
     short : sequence of Seam
         Those that keep their dofs.
-    parts : sequence of Superelement
+    parts : RelaxedParts
         The distinct parts.
     placed : sequence of Placed
         Each piece.
@@ -158,8 +167,10 @@ def seam_shapes(
     """
     ends = ends_of(seam, short)
     n, m = len(seam.dofs), len(seam.dofs) + len(ends)
-    beyond = [boundaries[number].dofs for number in seam.pieces]
-    others = np.setdiff1d(np.concatenate(beyond), np.concatenate([seam.dofs, ends]))
+    beyond, times = np.unique(
+        np.concatenate([boundaries[number].dofs for number in seam.pieces]), return_counts=True
+    )
+    others = np.setdiff1d(beyond[times > 1], np.concatenate([seam.dofs, ends]))
     stiffness, mass = _meeting(
         np.concatenate([seam.dofs, ends, others]), seam, parts, placed, boundaries
     )
@@ -186,21 +197,46 @@ def seam_shapes(
 def _meeting(
     dofs: Array,
     seam: Seam,
-    parts: Sequence[Superelement],
+    parts: RelaxedParts,
     placed: Sequence[Placed],
     boundaries: Sequence[Boundary],
 ) -> tuple[Array, Array]:
-    """Return reduced stiffness and mass of the pieces that meet at a seam, at some dofs."""
+    """Return reduced stiffness and mass of the pieces that meet at a seam, at some dofs.
+
+    All else of a piece follows them at rest, piece by piece: no other piece has it.
+    """
     order = np.argsort(dofs)
+    rising = dofs[order]
     stiffness, mass = np.zeros((len(dofs), len(dofs))), np.zeros((len(dofs), len(dofs)))
     for number in seam.pieces:
-        part, own = parts[placed[number].kind], placed[number]
-        at = order[np.searchsorted(dofs[order], boundaries[number].dofs)]
-        sign = own.sign[part.boundary]
-        signs = sign[:, None] * sign
-        stiffness[np.ix_(at, at)] += part.stiffness * signs
-        mass[np.ix_(at, at)] += part.mass * signs
+        own, mine = placed[number], boundaries[number].dofs
+        at = np.minimum(np.searchsorted(rising, mine), len(rising) - 1)
+        held = np.flatnonzero(rising[at] == mine)
+        k, m = parts.held_at(own.kind, held)
+        sign = own.sign[parts.reduced[own.kind].boundary[held]]
+        at, signs = order[at[held]], sign[:, None] * sign
+        stiffness[np.ix_(at, at)] += k * signs
+        mass[np.ix_(at, at)] += m * signs
     return stiffness, mass
+
+
+class RelaxedParts:
+    """Reduce parts to some of their boundary, the rest of which follows; each part once."""
+
+    def __init__(self, reduced: Sequence[Superelement]) -> None:
+        """`reduced` are the distinct parts."""
+        self.reduced = reduced
+        self._known: dict[tuple[int, bytes], tuple[Array, Array]] = {}
+
+    def held_at(self, kind: int, rows: Int[Array, " some"]) -> tuple[Array, Array]:
+        """Return stiffness and mass of a part at some rows of its boundary, by its own signs."""
+        key = (kind, rows.tobytes())
+        if key not in self._known:
+            part = self.reduced[kind]
+            order = np.concatenate([rows, np.setdiff1d(np.arange(len(part.boundary)), rows)])
+            at = np.ix_(order, order)
+            self._known[key] = _relaxed(part.stiffness[at], part.mass[at], len(rows))
+        return self._known[key]
 
 
 def _relaxed(stiffness: Array, mass: Array, kept: int) -> tuple[Array, Array]:

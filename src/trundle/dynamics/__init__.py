@@ -20,6 +20,7 @@ from trundle.dynamics.eigen import (
 )
 from trundle.dynamics.enquiry import Enquiry, Questions
 from trundle.dynamics.exact import ExactRecursion, ModalRecursion
+from trundle.dynamics.few_lines import few_lines
 from trundle.dynamics.kept_answers import (
     answers_as_arrays,
     answers_from_arrays,
@@ -105,6 +106,7 @@ __all__ = [
     "differentiator",
     "factorise",
     "factorise_damped",
+    "few_lines",
     "following_filters",
     "image_filters",
     "intervals_below",

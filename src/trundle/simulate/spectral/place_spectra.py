@@ -23,6 +23,7 @@ from trundle._typing import Array
 from trundle.dynamics import (
     ModalRecursion,
     differentiator,
+    few_lines,
     following_filters,
     image_filters,
     responses_of,
@@ -33,7 +34,7 @@ from trundle.simulate.spectral.places import PlaceResponses
 __all__ = ["place_spectra"]
 
 _PLACES = 100  # answered for at once, at most: what is made of them stays in memory used before
-_LINES = 16  # whose responses are formed at once
+_LINES = 128  # whose responses are formed at once, by those few of them that tell of all
 _TURNED = 32  # multiplied at once, and turned in cache
 _LOAD_BYTES = 25e6  # loads on the route's dofs in time, for a thread: memory that is used again
 _SPECTRUM_BYTES = 8e8  # their spectra held at once
@@ -151,20 +152,35 @@ def _responses(
         turn = 2.0 * np.pi * lines[part] * dt
         stepped = _modal_motion(steps, np.exp(1j * turn)[:, None])
         restored = responses_of(kept, turn)
-        for out, modal, image, follow, rate in zip(
-            found, stepped, images, followed, rates, strict=False
-        ):
-            whole = np.hstack(
-                [restored * modal + responses_of(image, turn), responses_of(follow, turn)]
-            )
+        wanted = zip(stepped, images, followed, strict=True)
+        motion = np.array(
+            [
+                np.hstack(
+                    [restored * modal + responses_of(image, turn), responses_of(follow, turn)]
+                )
+                for modal, image, follow in itertools.islice(wanted, len(found))
+            ]
+        )
+        sinking = np.array([responses_of(rate, turn) for rate in rates[: len(found)]])
+        few = few_lines(np.concatenate([motion, sinking], axis=2))
+        at = np.arange(len(turn)) if few is None else few[0]
+        for out, whole, sinks in zip(found, motion[:, at], sinking[:, at], strict=True):
+            told = out[part] if few is None else np.empty((len(at), *shape[1:]), dtype=out.dtype)
             for take in (np.real, np.imag):
-                _read(read, take(whole).astype(kind), shapes, out=take(out)[part])  # views both
+                _read(read, take(whole).astype(kind), shapes, out=take(told))  # views both
             if places.residual is not None:
-                static = responses_of(rate, turn)[:, :, None] * places.residual[group]
-                out[part] += static.astype(out.dtype)
+                told += sinks[:, :, None].astype(told.dtype) * places.residual[group].astype(kind)
+            if few is not None:
+                _combine(few[1].astype(kind), told, out=out[part])
 
     _in_threads(form, range(0, len(lines), _LINES))
     return found
+
+
+def _combine(weights: Array, told: Array, *, out: Array) -> None:
+    """Put answers at all lines in place, by those at few of them."""
+    flat = told.view(weights.dtype).reshape(len(told), -1)
+    np.matmul(weights, flat, out=out.view(weights.dtype).reshape(len(out), -1))
 
 
 def _read(read: Array, motion: Array, shapes: Array, *, out: Array) -> None:

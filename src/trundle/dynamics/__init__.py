@@ -20,7 +20,6 @@ from trundle.dynamics.eigen import (
 )
 from trundle.dynamics.enquiry import Enquiry, Questions
 from trundle.dynamics.exact import ExactRecursion, ModalRecursion
-from trundle.dynamics.few_lines import few_lines
 from trundle.dynamics.kept_answers import (
     answers_as_arrays,
     answers_from_arrays,
@@ -29,6 +28,7 @@ from trundle.dynamics.kept_answers import (
 from trundle.dynamics.kept_modes import are_modes_of, modes_as_arrays, modes_from_arrays
 from trundle.dynamics.kept_parts import is_reduction_of, part_as_arrays, part_from_arrays
 from trundle.dynamics.lanczos import Interval
+from trundle.dynamics.line_skeleton import few_lines
 from trundle.dynamics.modes import Basis, Modes, unit_rows
 from trundle.dynamics.newmark import HalfStep, NewmarkParameters, NewmarkPropagator
 from trundle.dynamics.pencil import (

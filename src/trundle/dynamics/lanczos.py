@@ -268,10 +268,10 @@ def _distance(interval: Interval, reached: _Reached, ahead: float) -> float:
     What the last shift saw beyond its slice tells that best: modes of a building of equal parts
     lie in clusters, so that the spacing of the last ones says little of the next.
     """
-    start = np.sqrt(reached.edge)
+    start, before = np.sqrt(reached.edge), max(1, int(ahead))
     beyond = np.sqrt(reached.beyond[reached.beyond > reached.edge])
-    if len(beyond) > ahead:
-        return float(0.5 * (beyond[int(ahead) - 1] + beyond[int(ahead)]) - start)
+    if len(beyond) > before:
+        return float(0.5 * (beyond[before - 1] + beyond[before]) - start)
     if len(beyond) > _SEEN * ahead:
         return float((beyond[-1] - start) * ahead / len(beyond))
     return float((np.sqrt(interval.limit) - start) / (interval.end - reached.found) * ahead)

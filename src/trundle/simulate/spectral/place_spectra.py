@@ -1,8 +1,8 @@
 """Carry contact forces to the spectra of the motion at many places, in bounded memory.
 
 The loads on the route's dofs are transformed, and multiplied line by line by the floor's frequency
-response. A response takes as many operations as a thousand runs of its place; so it is formed once,
-for as many places as there is room, and all runs pass by it.
+response. A response takes as many operations as hundreds of runs of its place; so it is formed
+once, for as many places as there is room, and all runs pass by it.
 """
 
 from __future__ import annotations
